@@ -1,0 +1,2 @@
+//! The `gnomon` command; everything it does lives in the library.
+fn main() {}

@@ -1,0 +1,3 @@
+//! Techniques.
+mod cost;
+pub use cost::{Cost, GpuTime, PassTime};
