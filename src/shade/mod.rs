@@ -1,1 +1,90 @@
-//! (to come)
+//! A lit picture from receivers and masks, per pixel on the CPU. Formulas: docs/lighting.md.
+//!
+//! ```text
+//! I = Ke + Ka Ia + Σ V f_att g_spot I_light (Kd/π max(0, n·l) + Ks spec)       over the lights
+//! ```
+//!
+//! The visibility V is all that a shadow technique supplies: it scales one light's diffuse and specular term and
+//! touches neither ambient nor emission. Normals are for lighting only and never decide a shadow.
+
+mod attenuation;
+mod brdf;
+mod encode;
+mod interpolate;
+mod terminator;
+
+pub use attenuation::{Incident, incident};
+pub use terminator::terminator;
+
+use crate::mask::{Mask, Visibility};
+use crate::receiver::{Receiver, Receivers};
+use crate::scene::{Light, Material, Scene, Shading};
+use brdf::reflected;
+use glam::{DVec3, UVec2, Vec3};
+use interpolate::Facet;
+use rayon::prelude::*;
+
+/// What pixels without geometry show: a neutral grey of 18 % reflectance, darker than most lit surfaces, lighter than shadow.
+pub const BACKGROUND: Vec3 = Vec3::splat(0.18);
+
+/// A lit picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: UVec2,
+    /// Linear RGB, not clamped, row by row from the top; `size.x * size.y` entries.
+    pub linear_rgb: Vec<Vec3>,
+}
+
+/// Lights the receivers. Each light comes with the mask that shadows it; lights that are not listed are off.
+///
+/// Pixels that a mask leaves out, or that show a mesh that does not receive shadows, have V = 1. A mask that is to
+/// darken facets turned away from the light, which nobody asks about, holds V = 0 there.
+#[must_use]
+pub fn shade(scene: &Scene, receivers: &Receivers, lights: &[(&Light, &Mask)]) -> Picture {
+    let pixel_colour = |(pixel, receiver): (usize, &Option<Receiver>)| match receiver {
+        None => BACKGROUND,
+        Some(receiver) => {
+            let takes_shadow = scene.mesh_of(receiver.triangle).receives;
+            let lit = lights.iter().map(|(light, mask)| {
+                let visibility = mask.pixels.get(pixel).copied().flatten().filter(|_| takes_shadow);
+                f64::from(visibility.unwrap_or(Visibility::LIT).get()) * direct_light(scene, receiver, light)
+            });
+            (own_colour(scene, material_of(scene, receiver)) + lit.sum::<DVec3>()).as_vec3()
+        }
+    };
+    let linear_rgb = receivers.pixels.par_iter().enumerate().map(pixel_colour).collect();
+    Picture { size: receivers.size, linear_rgb }
+}
+
+fn material_of<'a>(scene: &'a Scene, receiver: &Receiver) -> &'a Material {
+    &scene.materials[scene.triangle_material[receiver.triangle as usize] as usize]
+}
+
+/// What no shadow changes: emission and ambient light.
+fn own_colour(scene: &Scene, material: &Material) -> DVec3 {
+    (material.emission + material.ambient * scene.ambient).as_dvec3()
+}
+
+/// What one light adds where nothing blocks it. Gouraud shading lights the corners and interpolates their colours (H.
+/// Gouraud, "Continuous Shading of Curved Surfaces", 1971), the others light the point itself.
+fn direct_light(scene: &Scene, receiver: &Receiver, light: &Light) -> DVec3 {
+    let lit = |point: DVec3, normal: DVec3| {
+        let Some(incident) = incident(light, scene.mode, point) else { return DVec3::ZERO };
+        let towards_eye = (scene.camera.eye.as_dvec3() - point).normalize_or_zero();
+        incident.strength * reflected(scene, material_of(scene, receiver), normal, incident.towards_light, towards_eye)
+    };
+    match scene.shading {
+        Shading::Flat => lit(receiver.point_in_world, receiver.normal_in_world),
+        Shading::Phong | Shading::BlinnPhong => {
+            lit(receiver.point_in_world, Facet::new(scene, receiver).shading_normal())
+        }
+        Shading::Gouraud => {
+            let facet = Facet::new(scene, receiver);
+            facet.interpolate(std::array::from_fn(|k| lit(facet.corners[k], facet.normals[k])))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
