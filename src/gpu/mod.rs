@@ -1,1 +1,19 @@
-//! (to come)
+//! The only place with raw wgpu set-up: adapter and device, geometry buffers, the G-buffer, counted and timed passes,
+//! readback. Everything that can fail on a device comes out as a [`GpuError`].
+
+mod adapter;
+mod context;
+mod error;
+mod gbuffer;
+mod geometry;
+mod readback;
+mod recorder;
+pub mod shader;
+
+pub use adapter::{AdapterSummary, LimitsSummary, describe_adapters};
+pub use context::Gpu;
+pub use error::{GpuError, INSTALL_HINT};
+pub use gbuffer::GBuffer;
+pub use geometry::Geometry;
+pub(crate) use geometry::CORNER_LAYOUT;
+pub use recorder::{PassRecord, Recorder, WorkCounts};

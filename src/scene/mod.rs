@@ -11,7 +11,7 @@ mod light;
 pub use camera::{Camera, Far};
 pub use light::{Falloff, Light, LightKind, Segment};
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, DVec4, UVec2, Vec3};
 use std::ops::Range;
 
 /// A validated scene. Nothing in it is NaN, infinite or out of range; every index is in bounds. Coordinates are metres,
@@ -184,6 +184,13 @@ impl Scene {
     pub fn triangle_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.triangle_in_world(triangle);
         (b - a).cross(c - a)
+    }
+    /// On which side of a triangle's plane a homogeneous point lies: > 0 on the counter-clockwise side. Zero counts as
+    /// not facing, for every module alike. Evaluated in f64 on the f32 vertices; only the sign means anything.
+    #[must_use]
+    pub fn facing(&self, triangle: u32, homogeneous: DVec4) -> f64 {
+        let [a, ..] = self.triangle_in_world(triangle);
+        self.triangle_normal(triangle).dot(homogeneous.truncate() - a * homogeneous.w)
     }
     /// The index of the mesh a triangle belongs to.
     #[must_use]

@@ -1,3 +1,149 @@
-//! Techniques.
+//! Shadow techniques: one trait, one registry. A technique answers, on the GPU, the same question as the truth (what
+//! fraction of this light does this receiver see?), and replays itself on the CPU in f64 so that every wrong pixel can
+//! be explained.
+//!
+//! Adding one: a Rust file (or folder) here, at most one WGSL file of the same stem in `shaders/`, one line in
+//! [`registry`]. Tests, CLI and reports pick it up from there.
+
 mod cost;
+pub mod footprint;
+pub mod map;
+pub mod param;
+mod receiver_buffer;
+mod spec;
+mod unsupported;
+
 pub use cost::{Cost, GpuTime, PassTime};
+pub use receiver_buffer::ReceiverBuffer;
+pub use spec::{Spec, SpecError};
+pub use unsupported::Unsupported;
+
+use crate::cast::Casters;
+use crate::cause::Replay;
+use crate::gpu::{Geometry, Gpu, GpuError, PassRecord};
+use crate::inspect::Adjacency;
+use crate::mask::Mask;
+use crate::receiver::{PixelClass, Receivers};
+use crate::scene::{Light, Scene};
+use crate::watch::Interrupted;
+use footprint::Footprint;
+use param::Param;
+
+/// Every technique, in the order in which lists show them.
+#[must_use]
+pub fn registry() -> &'static [&'static dyn Technique] {
+    &[&map::Map]
+}
+
+/// A shadow technique.
+pub trait Technique: Sync {
+    /// The family's name in specifications.
+    fn id(&self) -> &'static str;
+    /// One line: the idea.
+    fn about(&self) -> &'static str;
+    /// Authors, title, year.
+    fn citation(&self) -> &'static str;
+    /// Its parameters, declared once.
+    fn params(&self) -> &'static [Param];
+    /// Whether it can answer for this light in this scene on this adapter.
+    ///
+    /// # Errors
+    /// The typed reason why not, which becomes a report row.
+    fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported>;
+    /// Builds everything the runs need.
+    ///
+    /// # Errors
+    /// [`TechniqueError`], [`TechniqueError::Unsupported`] included.
+    fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError>;
+}
+
+/// What a technique is asked, and everything it may use to answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'j> {
+    /// The device.
+    pub gpu: &'j Gpu,
+    /// The scene.
+    pub scene: &'j Scene,
+    /// Its triangles on the device.
+    pub geometry: &'j Geometry,
+    /// The exact ray core over the scene's casters, for replays.
+    pub casters: &'j Casters,
+    /// Which triangles touch, for telling a surface's own texels from others.
+    pub adjacency: &'j Adjacency,
+    /// The light asked about.
+    pub light: &'j Light,
+    /// The point behind every pixel.
+    pub receivers: &'j Receivers,
+    /// Which pixels are asked.
+    pub classes: &'j [PixelClass],
+}
+
+/// A technique ready to run for one job.
+pub trait Prepared {
+    /// Renders once, on the GPU.
+    ///
+    /// # Errors
+    /// What the device reported, or an asked pixel left unanswered.
+    fn run(&self) -> Result<Answer, TechniqueError>;
+    /// Bytes of maps and buffers on the GPU.
+    fn bytes(&self) -> u64;
+    /// What the technique settled on (fit, effective bias …) as label and value, for people.
+    fn facts(&self) -> Vec<(String, String)>;
+    /// Replays the given pixels (ascending indices of asked pixels) from the exact answer to `answer`.
+    ///
+    /// # Errors
+    /// What the device reported while stored values were read back.
+    fn replay(&self, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError>;
+    /// How one pixel's lookup went, for `explain`: label and value.
+    ///
+    /// # Errors
+    /// As [`Prepared::replay`].
+    fn lookup_facts(&self, pixel: u32) -> Result<Vec<(String, String)>, TechniqueError>;
+    /// The projected size of the technique's samples at a receiver; `None` for techniques without samples, and outside
+    /// the map.
+    fn footprint(&self, pixel: u32) -> Option<Footprint>;
+}
+
+/// What one run gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Visibility of every asked pixel.
+    pub mask: Mask,
+    /// What each pass cost.
+    pub passes: Vec<PassRecord>,
+}
+
+/// Why a technique gave no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum TechniqueError {
+    /// The technique does not apply here.
+    #[error(transparent)]
+    Unsupported(#[from] Unsupported),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The shader wrote nothing, or something that is no visibility, for an asked pixel: a bug of gnomon or a driver.
+    #[error("pixel ({x}, {y}) came back from the GPU as {value}, which is no visibility")]
+    NoAnswer {
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+        /// What was there.
+        value: f32,
+    },
+    /// The user asked to stop.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+/// " (did you mean 'x'?)" for the known word nearest to what was typed, if one is near enough to be a slip.
+pub(crate) fn nearest<'a>(typed: &str, known: impl Iterator<Item = &'a str>) -> String {
+    /// Jaro–Winkler similarity below which two words are not slips of each other.
+    const SLIP: f64 = 0.7;
+    known
+        .map(|word| (strsim::jaro_winkler(typed, word), word))
+        .filter(|(similarity, _)| *similarity > SLIP)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or_else(String::new, |(_, word)| format!(" (did you mean '{word}'?)"))
+}

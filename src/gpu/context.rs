@@ -1,0 +1,88 @@
+//! One device for everything: opening it, and running work with its errors caught.
+
+use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
+use super::GpuError;
+use std::sync::{Arc, Mutex, PoisonError};
+use wgpu::{Device, DeviceDescriptor, Error, ErrorFilter, Features, Limits, MemoryHints, PollType, Queue};
+
+/// An open device and its queue.
+#[derive(Debug)]
+pub struct Gpu {
+    pub(crate) device: Device,
+    pub(crate) queue: Queue,
+    adapter: AdapterSummary,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the best adapter, or the one that the environment variable `GNOMON_ADAPTER` names.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] or [`GpuError::NoDevice`].
+    pub fn open() -> Result<Self, GpuError> {
+        let wish = std::env::var(ADAPTER_VARIABLE).ok().filter(|wish| !wish.is_empty());
+        let adapter = choose(&instance(), wish.as_deref())?;
+        let summary = AdapterSummary::of(&adapter);
+        let wanted = WANTED_FEATURES.iter().fold(Features::empty(), |all, (feature, _)| all | *feature);
+        let (device, queue) = pollster::block_on(adapter.request_device(&DeviceDescriptor {
+            label: Some("gnomon"),
+            required_features: adapter.features() & wanted,
+            required_limits: adapter.limits(),
+            memory_hints: MemoryHints::MemoryUsage,
+            ..DeviceDescriptor::default()
+        }))
+        .map_err(|error| GpuError::NoDevice { adapter: summary.name.clone(), why: error.to_string() })?;
+        let lost = Arc::new(Mutex::new(None));
+        let note = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            *note.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{reason:?} {message}"));
+        });
+        Ok(Self { device, queue, adapter: summary, lost })
+    }
+
+    /// What reports say about the adapter.
+    #[must_use]
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.adapter
+    }
+
+    /// The limits that decide what can run here.
+    #[must_use]
+    pub fn limits(&self) -> LimitsSummary {
+        let limits: Limits = self.device.limits();
+        LimitsSummary {
+            texture_side: limits.max_texture_dimension_2d,
+            storage_binding_bytes: limits.max_storage_buffer_binding_size,
+            buffer_bytes: limits.max_buffer_size,
+        }
+    }
+
+    pub(crate) fn has(&self, feature: Features) -> bool {
+        self.device.features().contains(feature)
+    }
+
+    /// Runs `work` with every kind of device error caught, and waits until the device is done with what was submitted.
+    ///
+    /// # Errors
+    /// The first error the device reported meanwhile.
+    pub(crate) fn scoped<T>(&self, during: &str, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+        let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
+            .map(|filter| self.device.push_error_scope(filter));
+        let result = work();
+        let waited = self.device.poll(PollType::wait_indefinitely());
+        // Scopes pop in the reverse order of their pushes.
+        let errors: Vec<Error> =
+            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let during = during.to_owned();
+        if let Some(why) = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone() {
+            return Err(GpuError::Lost { during, why });
+        }
+        match errors.into_iter().next() {
+            Some(Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { during }),
+            Some(Error::Validation { description, .. } | Error::Internal { description, .. }) => {
+                Err(GpuError::Invalid { during, why: description })
+            }
+            None => waited.map(|_| result).map_err(|error| GpuError::Lost { during, why: error.to_string() }),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The G-buffer: which triangle each pixel centre shows.
+
+use super::geometry::CORNER_LAYOUT;
+use super::{Geometry, Gpu, GpuError, Recorder, shader};
+use crate::scene::Scene;
+use glam::UVec2;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{
+    BindGroupDescriptor, BindGroupEntry, BufferUsages, Color, CompareFunction, DepthStencilState, Extent3d,
+    FragmentState, LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+    RenderPipelineDescriptor, StoreOp, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, VertexState,
+};
+
+/// Triangle ids of one picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GBuffer {
+    /// Width and height in pixels.
+    pub size: UVec2,
+    /// Triangle id per pixel centre, row by row from the top; `None` is background.
+    pub triangles: Vec<Option<u32>>,
+}
+
+impl GBuffer {
+    /// Rasterises the scene from its camera: depth reversed, nothing culled.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] if the picture exceeds the adapter's limit, or what the device reported.
+    pub fn render(gpu: &Gpu, geometry: &Geometry, scene: &Scene) -> Result<Self, GpuError> {
+        let size = scene.image_size;
+        let limit = gpu.limits().texture_side;
+        if size.max_element() > limit {
+            return Err(GpuError::TooLarge {
+                what: "a picture side in pixels".to_owned(),
+                asked: size.max_element().into(),
+                limit: limit.into(),
+            });
+        }
+        let texture = |label, format, usage| {
+            gpu.device.create_texture(&TextureDescriptor {
+                label: Some(label),
+                size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let (ids, recorder) = gpu.scoped("the G-buffer's set-up", || {
+            let ids =
+                texture("ids", TextureFormat::R32Uint, TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC);
+            let depth = texture("depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
+            let pipeline = pipeline(gpu);
+            let clip_from_world = scene.camera.clip_from_world(size).as_mat4();
+            let uniform = gpu.device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("camera"),
+                contents: bytemuck::bytes_of(&clip_from_world),
+                usage: BufferUsages::UNIFORM,
+            });
+            let bindings = gpu.device.create_bind_group(&BindGroupDescriptor {
+                label: None,
+                layout: &pipeline.get_bind_group_layout(0),
+                entries: &[BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+            });
+            let mut recorder = Recorder::new(gpu);
+            recorder.render(
+                "g-buffer",
+                &[Some(RenderPassColorAttachment {
+                    view: &ids.create_view(&Default::default()),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: Operations { load: LoadOp::Clear(Color::TRANSPARENT), store: StoreOp::Store },
+                })],
+                Some(RenderPassDepthStencilAttachment {
+                    view: &depth.create_view(&Default::default()),
+                    depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Discard }),
+                    stencil_ops: None,
+                }),
+                |pass| {
+                    pass.set_pipeline(&pipeline);
+                    pass.set_bind_group(0, &bindings, &[]);
+                    geometry.draw_all(pass);
+                },
+            );
+            (ids, recorder)
+        })?;
+        recorder.finish("the G-buffer")?;
+        let ids = gpu.read_texture::<u32>(&ids, "the G-buffer's readback")?;
+        Ok(Self { size, triangles: ids.into_iter().map(|id| id.checked_sub(1)).collect() })
+    }
+}
+
+fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
+    let module = gpu.shader("gbuffer", &[shader::GBUFFER]);
+    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
+        label: Some("gbuffer"),
+        layout: None,
+        vertex: VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[Some(CORNER_LAYOUT)],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(DepthStencilState {
+            format: TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(CompareFunction::Greater),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(TextureFormat::R32Uint.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

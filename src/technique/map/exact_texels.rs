@@ -1,0 +1,61 @@
+//! What an ideal rasteriser would store: the exact depth along the ray through each texel's centre, cast in f64.
+
+use super::lookup::Lookup;
+use crate::cast::Casters;
+use crate::scene::{Scene, Segment};
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// One texel of the ideal map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ExactTexel {
+    /// Depth with the rasteriser's bias; the cleared value where nothing casts.
+    pub(super) depth: f64,
+    /// The triangle it came from.
+    pub(super) triangle: Option<u32>,
+}
+
+/// The texels that some lookups read, sorted by index.
+#[derive(Debug)]
+pub(super) struct ExactTexels {
+    pub(super) indices: Vec<u32>,
+    texels: Vec<ExactTexel>,
+}
+
+impl ExactTexels {
+    /// Casts through the centres of the texels with these indices (row by row; any order, repeats allowed).
+    pub(super) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, mut indices: Vec<u32>) -> Self {
+        indices.par_sort_unstable();
+        indices.dedup();
+        let texels = indices.par_iter().map(|index| exact_texel(scene, casters, lookup, *index)).collect();
+        Self { indices, texels }
+    }
+
+    /// Position of a texel in `indices`; only for texels that were asked for.
+    pub(super) fn rank(&self, index: u32) -> Option<usize> {
+        self.indices.binary_search(&index).ok()
+    }
+
+    /// The texel at a rank.
+    pub(super) fn at(&self, rank: usize) -> ExactTexel {
+        self.texels[rank]
+    }
+}
+
+fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) -> ExactTexel {
+    let width = lookup.frustum.texels.x;
+    let centre = DVec2::new((index % width).into(), (index / width).into()) + 0.5;
+    let [from, to] = lookup.ray_through(centre);
+    let mut hits = Vec::new();
+    casters.all_hits(&Segment { from, to }, None, &mut hits);
+    let cleared = if lookup.frustum.reversed { 0.0 } else { 1.0 };
+    let stored = hits.iter().map(|hit| {
+        let in_map = lookup.frustum.project(from.lerp(to, hit.t));
+        let biased = in_map.z / in_map.w + lookup.hardware_bias(scene.triangle_in_world(hit.triangle));
+        ExactTexel { depth: biased.clamp(0.0, 1.0), triangle: Some(hit.triangle) }
+    });
+    let nearer = |a: &ExactTexel, b: &ExactTexel| {
+        (lookup.frustum.depth_sign() * a.depth).total_cmp(&(lookup.frustum.depth_sign() * b.depth))
+    };
+    stored.min_by(nearer).unwrap_or(ExactTexel { depth: cleared, triangle: None })
+}

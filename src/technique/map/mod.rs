@@ -1,0 +1,167 @@
+//! Shadow maps: one depth image from the light; a receiver is in shadow if something nearer is stored at its texel.
+//!
+//! L. Williams, "Casting Curved Shadows on Curved Surfaces", 1978; M. Segal et al., "Fast Shadows and Lighting Effects
+//! Using Texture Mapping", 1992. Assumes nothing about the casters. Known failures: staircase edges (`edge-aliasing`),
+//! self-shadow speckle (`acne`), detached contacts (`peter-panning`), whatever lies outside the frustum (`clipping-*`),
+//! quantised depth (`precision`). Formulas: docs/map.md.
+//!
+//! Three orthogonal axes, each a registry: [`projection`] × [`filter`] × [`bias`].
+
+pub mod bias;
+mod depth_format;
+mod exact_texels;
+pub mod filter;
+mod lookup;
+mod passes;
+mod prepared;
+pub mod projection;
+mod replay;
+mod settings;
+
+pub use depth_format::DepthFormat;
+pub use lookup::{Lookup, Outside, Placed};
+pub use passes::shader_modules;
+pub use settings::{Fit, Settings};
+
+use super::param::{Choice, Kind, Param, Value};
+use super::{Job, Prepared, Spec, Technique, TechniqueError, Unsupported};
+use crate::gpu::Gpu;
+use crate::scene::{Light, Scene};
+use std::sync::LazyLock;
+
+/// The `map` family.
+#[derive(Debug, Clone, Copy)]
+pub struct Map;
+
+impl Technique for Map {
+    fn id(&self) -> &'static str {
+        "map"
+    }
+    fn about(&self) -> &'static str {
+        "shadow map: depth seen from the light, compared at each receiver"
+    }
+    fn citation(&self) -> &'static str {
+        "L. Williams, Casting Curved Shadows on Curved Surfaces, 1978"
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
+        let settings = Settings::of(spec);
+        let limit = gpu.limits().texture_side;
+        if settings.size > limit {
+            let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
+            return Err(Unsupported::MissingFeature { what });
+        }
+        settings.projection.supports(scene, light, &settings)
+    }
+    fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
+        self.supports(spec, job.scene, job.light, job.gpu)?;
+        Ok(Box::new(prepared::PreparedMap::new(Settings::of(spec), job)?))
+    }
+}
+
+static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
+    let plain = |names: &[&'static str]| Kind::Choice(names.iter().copied().map(Choice::plain).collect());
+    let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
+    let real = |min, max| Kind::Real { min, max, auto: false };
+    let auto = |min, max| Kind::Real { min, max, auto: true };
+    /// Far beyond any scene f32 can hold with useful precision.
+    const MAX_M: f64 = 1e12;
+    const MIN_M: f64 = 1e-12;
+    vec![
+        param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the map"),
+        param(
+            "projection",
+            "",
+            Kind::Choice(projection::registry().iter().map(|p| Choice::plain(p.name())).collect()),
+            Value::Choice("single", None),
+            "how the light's view is laid out in the map",
+        ),
+        param(
+            "filter",
+            "",
+            Kind::Choice(filter::registry().iter().map(|f| f.choice()).collect()),
+            Value::Choice("nearest", None),
+            "how comparisons are averaged",
+        ),
+        param(
+            "bias",
+            "",
+            Kind::Choice(bias::registry().iter().map(|b| Choice::plain(b.name())).collect()),
+            Value::Choice("closed-form", None),
+            "what keeps a surface from shadowing itself",
+        ),
+        param(
+            "format",
+            "",
+            plain(&["depth32float", "depth24plus", "depth16unorm"]),
+            Value::Choice("depth32float", None),
+            "what a texel stores",
+        ),
+        param(
+            "depth_convention",
+            "",
+            plain(&["reversed", "forward"]),
+            Value::Choice("reversed", None),
+            "which end of the depth range is near the light",
+        ),
+        param(
+            "bias_constant_ulps",
+            "hardware units",
+            auto(-1e6, 1e6),
+            Value::Auto,
+            "rasteriser's constant bias; auto: 2 with bias=constant or slope, else 0",
+        ),
+        param(
+            "bias_slope",
+            "hardware factor",
+            auto(0.0, 64.0),
+            Value::Auto,
+            "rasteriser's bias per depth slope; auto: 1 with bias=slope, else 0",
+        ),
+        param("bias_clamp", "depth", real(0.0, 1.0), Value::Real(0.0), "largest hardware bias; 0: no limit"),
+        param("bias_depth_m", "m", real(0.0, MAX_M), Value::Real(0.0), "bias along the light at the receiver"),
+        param(
+            "bias_normal_texels",
+            "texels",
+            real(0.0, 64.0),
+            Value::Real(0.0),
+            "receiver moved along its normal, times the sine of its tilt to the light",
+        ),
+        param(
+            "bias_cap_texels",
+            "texels",
+            real(1.0, 1e4),
+            Value::Real(64.0),
+            "largest closed-form bias at grazing light",
+        ),
+        param(
+            "fit",
+            "",
+            plain(&["scene", "receivers", "manual"]),
+            Value::Choice("scene", None),
+            "what the light frustum encloses; manual: width 10 m, near 1 m, far 30 m, 5 m back, unless given",
+        ),
+        param(
+            "fit_margin_texels",
+            "texels",
+            real(0.0, 8.0),
+            Value::Real(1.0),
+            "rim around the fit beyond the kernel's radius and one texel",
+        ),
+        param("near_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's near plane; auto: fitted"),
+        param("far_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's far plane; auto: fitted"),
+        param("width_m", "m", auto(MIN_M, MAX_M), Value::Auto, "width of a directional light's map; auto: fitted"),
+        param(
+            "pull_back_m",
+            "m",
+            auto(0.0, MAX_M),
+            Value::Auto,
+            "how far behind the scene's centre a directional light's view starts; auto: the scene's radius",
+        ),
+        param("fov_deg", "degrees", auto(0.01, 170.0), Value::Auto, "full angle of a point or spot light's map"),
+        param("phase_u_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted sideways, for jitter"),
+        param("phase_v_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted upwards, for jitter"),
+    ]
+});

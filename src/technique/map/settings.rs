@@ -1,0 +1,114 @@
+//! A `map` specification as typed settings.
+
+use super::{DepthFormat, bias, filter, projection};
+use crate::technique::Spec;
+
+/// Everything the user can set about a map.
+#[derive(Clone, Copy)]
+pub struct Settings {
+    /// Texels a side.
+    pub size: u32,
+    /// Projection axis.
+    pub projection: &'static dyn projection::Projection,
+    /// Filter axis.
+    pub filter: &'static dyn filter::Filter,
+    /// The number behind the filter's name.
+    pub kernel: u32,
+    /// Bias axis.
+    pub bias: &'static dyn bias::Bias,
+    /// What a texel stores.
+    pub format: DepthFormat,
+    /// True where 1 is near the light.
+    pub reversed: bool,
+    /// The numeric bias parameters as typed.
+    pub bias_numbers: bias::Numbers,
+    /// How the frustum is fitted.
+    pub fit: Fit,
+}
+
+/// How the light frustum is fitted; `None` is `auto`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    /// What it encloses.
+    pub around: Around,
+    /// Rim beyond the kernel's radius and one texel.
+    pub margin_texels: f64,
+    /// Near plane, metres from the light's view point.
+    pub near_m: Option<f64>,
+    /// Far plane.
+    pub far_m: Option<f64>,
+    /// Width of a parallel map.
+    pub width_m: Option<f64>,
+    /// How far behind the scene's centre a parallel view starts.
+    pub pull_back_m: Option<f64>,
+    /// Full angle of a perspective map, radians.
+    pub fov_rad: Option<f64>,
+    /// Shift of the map in texels, for jitter.
+    pub phase_texels: glam::DVec2,
+}
+
+/// What a fit encloses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Around {
+    /// All geometry: the map does not depend on the camera.
+    Scene,
+    /// What the camera sees.
+    Receivers,
+    /// The numbers typed, with the defaults of R. Ploszajczak's master's thesis (2008).
+    Manual,
+}
+
+impl Settings {
+    /// Reads a `map` specification, whose parameters are declared in the family's list.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Self {
+        let (filter_name, kernel) = spec.choice("filter");
+        Self {
+            size: spec.integer("size") as u32,
+            projection: projection::by_name(spec.choice("projection").0),
+            filter: filter::by_name(filter_name),
+            kernel,
+            bias: bias::by_name(spec.choice("bias").0),
+            format: match spec.choice("format").0 {
+                "depth16unorm" => DepthFormat::Depth16Unorm,
+                "depth24plus" => DepthFormat::Depth24Plus,
+                _ => DepthFormat::Depth32Float,
+            },
+            reversed: spec.choice("depth_convention").0 == "reversed",
+            bias_numbers: bias::Numbers {
+                constant_units: spec.real_or_auto("bias_constant_ulps"),
+                slope: spec.real_or_auto("bias_slope"),
+                clamp: spec.real("bias_clamp"),
+                depth_m: spec.real("bias_depth_m"),
+                normal_texels: spec.real("bias_normal_texels"),
+                cap_texels: spec.real("bias_cap_texels"),
+            },
+            fit: Fit {
+                around: match spec.choice("fit").0 {
+                    "receivers" => Around::Receivers,
+                    "manual" => Around::Manual,
+                    _ => Around::Scene,
+                },
+                margin_texels: spec.real("fit_margin_texels"),
+                near_m: spec.real_or_auto("near_m"),
+                far_m: spec.real_or_auto("far_m"),
+                width_m: spec.real_or_auto("width_m"),
+                pull_back_m: spec.real_or_auto("pull_back_m"),
+                fov_rad: spec.real_or_auto("fov_deg").map(f64::to_radians),
+                phase_texels: glam::DVec2::new(spec.real("phase_u_texels"), spec.real("phase_v_texels")),
+            },
+        }
+    }
+
+    /// Texels between the fit and the map's rim, so that kernels stay inside.
+    #[must_use]
+    pub fn rim_texels(&self) -> f64 {
+        self.filter.radius_texels(self.kernel) + 1.0 + self.fit.margin_texels
+    }
+
+    /// The bias axis's amounts for this filter.
+    #[must_use]
+    pub fn bias_amounts(&self) -> bias::Amounts {
+        self.bias.amounts(&self.bias_numbers, self.filter.bias_kernel(self.kernel))
+    }
+}

@@ -1,0 +1,34 @@
+//! Typed refusals: a technique that does not apply is a row of the report, not an error.
+
+/// Why a technique does not apply.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unsupported {
+    /// The technique cannot handle this kind of light.
+    #[error("not applicable: {kind} lights; it handles {handled}")]
+    Light {
+        /// The light's kind.
+        kind: &'static str,
+        /// The kinds it handles.
+        handled: &'static str,
+    },
+    /// One frustum cannot hold what it must.
+    #[error("not applicable: the receivers span {asked_deg:.0} degrees as seen from the light, one frustum holds {limit_deg:.0}")]
+    FieldOfView {
+        /// Full angle needed.
+        asked_deg: f64,
+        /// Largest full angle.
+        limit_deg: f64,
+    },
+    /// The adapter lacks something.
+    #[error("not applicable: this adapter lacks {what}")]
+    MissingFeature {
+        /// What is missing, with numbers.
+        what: String,
+    },
+    /// The parameters leave nothing to do.
+    #[error("not applicable: {why}")]
+    Degenerate {
+        /// In words.
+        why: String,
+    },
+}
