@@ -1,1 +1,33 @@
-//! (to come)
+//! Verdicts: how far a technique's mask is from the truth, where, and by which cause.
+//!
+//! [`judge`] compares a mask with the truth pixel by pixel; [`ledger`](ledger()) books every error to the stages of the
+//! technique's replay. Both are pure functions of what they are given: same input, same bytes out, whatever the number
+//! of threads.
+
+mod blobs;
+mod counts;
+mod distance;
+mod edge;
+mod judge;
+#[cfg(test)]
+mod judge_tests;
+mod ledger;
+#[cfg(test)]
+mod ledger_tests;
+
+pub use blobs::{Blob, blobs};
+pub use counts::{EdgeDistance, ErrorStats, PixelCounts, WorstCase};
+pub use judge::{Verdict, VerdictError, judge};
+pub use ledger::{CauseShare, Entry, Ledger, LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
+
+/// A pixel lit by a point, directional or spot light is wrong above this |technique − truth|.
+pub const WRONG_ABOVE_HARD: f64 = 0.5;
+
+/// A pixel lit by a rectangle or sphere light is wrong above this |technique − truth|.
+pub const WRONG_ABOVE_SOFT: f64 = 0.1;
+
+/// A pixel differs above this |technique − truth|: half of one step of an 8-bit picture.
+pub const DIFFERING_ABOVE: f64 = 1.0 / 512.0;
+
+/// The truth counts as lit from this visibility on; the true shadow edge runs between lit and shadowed pixels.
+pub const LIT_FROM: f32 = 0.5;
