@@ -1,0 +1,53 @@
+# Every command of gnomon's README. Each first installs what is missing; a second run needs no network.
+SHELL := /bin/bash
+CARGO ?= cargo
+GNOMON = $(or $(CARGO_TARGET_DIR),target)/release/gnomon
+DEMO = out/demo
+
+.PHONY: help setup demo test bench docs clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-6s %s\n", $$1, $$2 }' Makefile
+
+setup: ## a Vulkan driver and the two large meshes, where missing
+	setup/vulkan.sh
+	setup/meshes.sh
+
+demo: setup ## judge three scenes' shadows; report and pictures go to out/demo
+	@echo '==> building gnomon'
+	$(CARGO) build --release --locked
+	@echo '==> judging shadows (a budget exceeded, exit status 1, is a result)'
+	rm -rf $(DEMO)
+	$(GNOMON) check scenes/torus scenes/room scenes/kitchen --out $(DEMO) || [ $$? -eq 1 ]
+	@echo '==> rendering the room'
+	$(GNOMON) render scenes/room -o $(DEMO)/room.png
+	@echo '==> pictures:'
+	@ls $(DEMO)/*.png
+	@echo '==> report: $(DEMO)/report.json'
+
+test: setup ## format, lints, documentation and every test
+	setup/rust.sh
+	@echo '==> format'
+	$(CARGO) fmt --check
+	@echo '==> lints'
+	$(CARGO) clippy --all-targets --locked -- -D warnings
+	@echo '==> documentation'
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --document-private-items --locked
+	@echo '==> tests'
+	mkdir -p out
+	set -o pipefail; $(CARGO) test --locked | tee out/test.log
+	@awk '/^test result:/ { suites++; for (i = 2; i <= NF; i++) { \
+	        if ($$i ~ /^passed/) passed += $$(i - 1); if ($$i ~ /^ignored/) ignored += $$(i - 1) } } \
+	    END { printf "==> %d tests passed in %d suites, %d ignored; log: out/test.log\n", passed, suites, ignored; \
+	        exit passed == 0 }' out/test.log
+
+bench: setup ## measure speed and memory, as ratios within one run
+	$(CARGO) bench --locked
+
+docs: ## the library's documentation
+	$(CARGO) doc --no-deps --locked
+	@echo '==> $(or $(CARGO_TARGET_DIR),target)/doc/gnomon/index.html'
+
+clean: ## remove what was built and reported; the large meshes stay
+	$(CARGO) clean
+	rm -rf out
