@@ -4,6 +4,7 @@
 //! Data flows one way, and a module uses only what stands above it:
 //!
 //! ```text
+//! watch      how long work reports progress and learns that it should stop
 //! scene      file → validated, immutable Scene                              (no wgpu)
 //! inspect    what the scene requires: closed? T-junctions? depth range?     (no wgpu)
 //! cast       the exact ray core: bvh, watertight test, brute force          (no wgpu)
@@ -15,6 +16,7 @@
 //! technique  (gpu, scene, receivers) → Mask, and its stages replayed in f64
 //! shade      receivers and masks → a lit picture                            (no wgpu)
 //! verdict    (Mask, TruthMask, stages) → Verdict                            (pure functions, no wgpu)
+//! evaluate   technique against truth: answer, cost, verdict and ledger of one run
 //! report     Verdict → json, csv, png                                       (pure: returns bytes, no wgpu)
 //! cli        the only IO and the only anyhow
 //! ```
@@ -25,10 +27,12 @@ pub mod gpu;
 pub mod inspect;
 pub mod mask;
 pub mod receiver;
+pub mod evaluate;
 pub mod report;
+pub mod cli;
+pub mod watch;
 pub mod scene;
 pub mod shade;
 pub mod technique;
 pub mod truth;
 pub mod verdict;
-pub mod watch;

@@ -11,7 +11,7 @@ use wgpu::{Buffer, BufferUsages};
 /// A receiver as the shaders read it (`Receiver` in `shaders/shared/receiver.wgsl`).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct GpuReceiver {
+pub(crate) struct GpuReceiver {
     /// Rebased world, metres.
     pub point_in_world: [f32; 3],
     /// Triangle id.

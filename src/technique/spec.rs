@@ -179,6 +179,13 @@ fn parts(rest: &str) -> Vec<&str> {
     rest.split(outside).filter(|part| !part.trim().is_empty()).collect()
 }
 
+impl PartialEq for Spec {
+    /// Equal if the canonical spellings are; how they were typed does not matter.
+    fn eq(&self, other: &Self) -> bool {
+        self.technique.id() == other.technique.id() && self.values == other.values
+    }
+}
+
 impl fmt::Display for Spec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts: Vec<String> = self.values.iter().map(|(name, value)| format!("{name}={value}")).collect();

@@ -17,6 +17,7 @@ pub(super) struct PreparedMap<'j> {
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
     clip_from_world: DMat4,
+    pub(super) scene_radius_m: f64,
 }
 
 impl<'j> PreparedMap<'j> {
@@ -28,7 +29,8 @@ impl<'j> PreparedMap<'j> {
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = MapPasses::new(job.gpu, &settings, &lookup, &receivers)?;
         let clip_from_world = job.scene.camera.clip_from_world(job.scene.image_size);
-        Ok(Self { job, settings, lookup, passes, receivers, clip_from_world })
+        let scene_radius_m = job.scene.bounds().radius();
+        Ok(Self { job, settings, lookup, passes, receivers, clip_from_world, scene_radius_m })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {

@@ -73,8 +73,7 @@ fn replay_pixel(
 ) -> Option<(f64, [Step; STAGES.len()])> {
     let receiver = map.receiver(pixel)?;
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
-    let scene = map.job.scene;
-    let segment = map.job.light.segment_from(receiver.point_in_world, scene.bounds().radius());
+    let segment = map.job.light.segment_from(receiver.point_in_world, map.scene_radius_m);
     let mut hits = Vec::new();
     map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
     let exact = visibility(hits.is_empty());
@@ -134,14 +133,14 @@ fn coverage(map: &PreparedMap<'_>, receiver: &Receiver, hits: &[Hit]) -> Step {
     if let Err(outside) = map.lookup.project(receiver.point_in_world) {
         return Step { value: 1.0, cause: cause_of(outside) };
     }
-    let segment = map.job.light.segment_from(receiver.point_in_world, map.job.scene.bounds().radius());
+    let segment = map.job.light.segment_from(receiver.point_in_world, map.scene_radius_m);
     let blocked = hits.iter().any(|hit| map.lookup.project(segment.from.lerp(segment.to, hit.t)).is_ok());
     Step { value: visibility(!blocked), cause: Cause::ClippingNear }
 }
 
 /// The exact ray with the bias: blockers that the comparison cannot tell from the receiver are not there.
 fn biased(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed) -> f64 {
-    let segment = map.job.light.segment_from(placed.point_in_world, map.job.scene.bounds().radius());
+    let segment = map.job.light.segment_from(placed.point_in_world, map.scene_radius_m);
     let mut hits = Vec::new();
     map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
     let blocks = |hit: &Hit| {

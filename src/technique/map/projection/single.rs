@@ -6,7 +6,7 @@ use super::{LightFrustum, Projection, Shape, Window};
 use crate::scene::{Light, LightKind, Mesh, Scene};
 use crate::technique::Unsupported;
 use crate::technique::map::settings::{Around, Fit, Settings};
-use glam::{DMat4, DVec2, DVec3, UVec2};
+use glam::{DMat4, DVec3, UVec2};
 
 /// One frustum.
 #[derive(Debug)]

@@ -1,0 +1,104 @@
+//! One evaluation: a technique's answer and cost, the verdict on it, and the ledger of its errors.
+//!
+//! A [`View`] holds what does not depend on the light, a [`Question`] what does not depend on the technique; both are
+//! made once and shared by every evaluation.
+
+mod cost;
+mod jitter;
+mod view;
+
+pub use jitter::{JitterStats, jittered};
+pub use view::{Question, View};
+
+use crate::cause::Replay;
+use crate::mask::Mask;
+use crate::technique::{Cost, Prepared, Spec, TechniqueError};
+use crate::verdict::{Ledger, LedgerError, Verdict, VerdictError, WRONG_ABOVE_HARD, judge, ledger};
+use crate::watch::{Interrupted, Watch};
+
+/// How thorough an evaluation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort {
+    /// Timed runs after one warm-up; 0 runs once and measures no time.
+    pub timed_runs: u32,
+    /// Whether errors are booked to causes.
+    pub explains: bool,
+}
+
+impl Effort {
+    /// What `check` does.
+    pub const FULL: Self = Self { timed_runs: 3, explains: true };
+    /// Only the verdict.
+    pub const VERDICT: Self = Self { timed_runs: 0, explains: false };
+    /// The verdict and its causes, without a warm-up.
+    pub const CAUSES: Self = Self { timed_runs: 0, explains: true };
+}
+
+/// A technique evaluated for one light of one view.
+pub struct Evaluation<'v> {
+    /// The technique, ready to be asked for more.
+    pub prepared: Box<dyn Prepared + 'v>,
+    /// Its answer.
+    pub mask: Mask,
+    /// How good the answer is.
+    pub verdict: Verdict,
+    /// The replay of every pixel with an error; empty without [`Effort::explains`].
+    pub replay: Replay,
+    /// Why it is wrong; empty without [`Effort::explains`].
+    pub ledger: Ledger,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+impl std::fmt::Debug for Evaluation<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Evaluation").field("pixels", &self.verdict.pixels).finish_non_exhaustive()
+    }
+}
+
+/// Why an evaluation has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum EvaluateError {
+    /// The technique gave no answer.
+    #[error(transparent)]
+    Technique(#[from] TechniqueError),
+    /// The answer cannot be judged.
+    #[error(transparent)]
+    Verdict(#[from] VerdictError),
+    /// The replay does not explain the answer: a bug of gnomon.
+    #[error("the replay does not explain the answer: {0}")]
+    Ledger(#[from] LedgerError),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+/// Evaluates one technique.
+///
+/// # Errors
+/// [`EvaluateError`]; an unsupported technique is [`TechniqueError::Unsupported`].
+pub fn evaluate<'v>(
+    view: &'v View<'_>,
+    question: &'v Question<'v>,
+    spec: &Spec,
+    effort: Effort,
+    watch: &dyn Watch,
+) -> Result<Evaluation<'v>, EvaluateError> {
+    let prepared = spec.technique().prepare(spec, view.job(question))?;
+    let measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
+    let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, WRONG_ABOVE_HARD)?;
+    if watch.interrupted() {
+        return Err(Interrupted.into());
+    }
+    let (replay, ledger) = if effort.explains {
+        let is_off = |(_, error): &(usize, &Option<f64>)| error.is_some_and(|error| error != 0.0);
+        let pixels: Vec<u32> =
+            verdict.signed_error.iter().enumerate().filter(is_off).map(|(pixel, _)| pixel as u32).collect();
+        let replay = prepared.replay(&measured.mask, &pixels)?;
+        let ledger = ledger(&verdict, &question.truth.mask, &measured.mask, &replay)?;
+        (replay, ledger)
+    } else {
+        (Replay::default(), Ledger::default())
+    };
+    Ok(Evaluation { prepared, mask: measured.mask, verdict, replay, ledger, cost: measured.cost })
+}

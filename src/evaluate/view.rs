@@ -1,0 +1,93 @@
+//! What evaluations share: the scene on the device, its rays, its receivers; and the truth for one light.
+
+use crate::cast::Casters;
+use crate::gpu::{GBuffer, Geometry, Gpu, GpuError};
+use crate::inspect::{Adjacency, neighbours};
+use crate::receiver::{PixelClass, Receivers};
+use crate::scene::{Light, Scene};
+use crate::technique::Job;
+use crate::truth::{self, Disagreement, ExactTruth};
+use crate::watch::{Interrupted, Watch};
+
+/// A scene seen from its camera: all that no light changes.
+#[derive(Debug)]
+pub struct View<'s> {
+    /// The device.
+    pub gpu: &'s Gpu,
+    /// The scene.
+    pub scene: &'s Scene,
+    /// Its triangles on the device.
+    pub geometry: Geometry,
+    /// Its casters for rays.
+    pub casters: Casters,
+    /// Which triangles touch.
+    pub adjacency: Adjacency,
+    /// The point behind every pixel.
+    pub receivers: Receivers,
+}
+
+/// The question about one light: which pixels are asked, and the exact answer.
+#[derive(Debug)]
+pub struct Question<'s> {
+    /// The light.
+    pub light: &'s Light,
+    /// The class of every pixel.
+    pub classes: Vec<PixelClass>,
+    /// The exact answer.
+    pub truth: ExactTruth,
+    /// Sampled pixels on which brute force disagrees with it: none, or a bug.
+    pub brute_disagreements: Vec<Disagreement>,
+}
+
+/// Asked pixels that brute force decides again for each question.
+const CROSS_CHECKED: u32 = 256;
+/// Triangle tests a cross-check may take altogether: about a tenth of a second.
+const CROSS_CHECK_TESTS: usize = 8_000_000;
+
+impl<'s> View<'s> {
+    /// Uploads and rasterises a scene.
+    ///
+    /// # Errors
+    /// What the device reported.
+    pub fn new(gpu: &'s Gpu, scene: &'s Scene) -> Result<Self, GpuError> {
+        let geometry = Geometry::upload(gpu, scene)?;
+        let ids = GBuffer::render(gpu, &geometry, scene)?;
+        Ok(Self {
+            gpu,
+            scene,
+            geometry,
+            casters: Casters::new(scene),
+            adjacency: neighbours(scene),
+            receivers: Receivers::new(scene, &ids.triangles),
+        })
+    }
+
+    /// Works out the truth for one light.
+    ///
+    /// # Errors
+    /// [`Interrupted`] if the user asked to stop.
+    pub fn ask(&self, light: &'s Light, watch: &dyn Watch) -> Result<Question<'s>, Interrupted> {
+        let classes = self.receivers.classify(self.scene, light);
+        let truth = truth::exact(self.scene, &self.casters, light, &self.receivers, &classes, watch)?;
+        let affordable = CROSS_CHECK_TESTS / self.casters.triangle_count().max(1);
+        let samples = CROSS_CHECKED.min(affordable as u32);
+        let brute_disagreements =
+            truth::cross_check(self.scene, light, &self.receivers, &classes, &truth.mask, samples);
+        Ok(Question { light, classes, truth, brute_disagreements })
+    }
+
+    /// What a technique gets for a question.
+    #[must_use]
+    pub fn job<'j>(&'j self, question: &'j Question<'_>) -> Job<'j> {
+        Job {
+            gpu: self.gpu,
+            scene: self.scene,
+            geometry: &self.geometry,
+            casters: &self.casters,
+            adjacency: &self.adjacency,
+            light: question.light,
+            receivers: &self.receivers,
+            classes: &question.classes,
+        }
+    }
+}
