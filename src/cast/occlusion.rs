@@ -1,0 +1,68 @@
+//! Whether a receiver is in shadow, and whether that would still be so if its position were rounded otherwise.
+//!
+//! The start of a shadow ray is a rounded point. The walk that looks for a blocker also notices whether any triangle's
+//! decision could change while the start moves by its rounding error ([`Ray`] widens its bounds by it); that is
+//! rare, and only then is the verdict worked out again from starts moved along the axes.
+
+use super::Casters;
+use super::packed::Crossing;
+use super::ray::Ray;
+use super::scene::Segment;
+use glam::DVec3;
+use std::ops::ControlFlow;
+
+/// What a receiver sees of one point of a light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Occlusion {
+    /// Nothing blocks the segment.
+    Clear,
+    /// Something blocks the segment.
+    Blocked,
+    /// The verdict changes when the start moves by its own rounding error.
+    Doubtful,
+}
+
+impl Casters {
+    /// Whether `segment` is blocked by any but the `own` triangle and those in its place, and whether that is so from
+    /// everywhere within `radius_m` of its start.
+    ///
+    /// The verdict is tried at the start and at √3·`radius_m` from it, both ways along each axis: the octahedron
+    /// of those six points holds the whole ball, so a plane between light and shadow that cuts the ball leaves one of
+    /// them on its other side. Another surface through the start itself is such a plane.
+    #[must_use]
+    pub fn occlusion(&self, segment: &Segment, own: Option<u32>, radius_m: f64) -> Occlusion {
+        let Some(ray) = Ray::new(segment, &self.bounds, radius_m) else { return Occlusion::Clear };
+        let (mut blocked, mut unsure) = (false, false);
+        self.each_candidate(&ray, own, |triangle, _| {
+            match triangle.crossing(&ray) {
+                Crossing::Missed => {}
+                Crossing::Unsure => unsure = true,
+                Crossing::Crossed => {
+                    blocked = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        match (blocked, unsure) {
+            (true, _) => Occlusion::Blocked,
+            (false, false) => Occlusion::Clear,
+            (false, true) => self.occlusion_around(segment, own, radius_m),
+        }
+    }
+
+    /// Compares the exact verdicts at the start and around it.
+    fn occlusion_around(&self, segment: &Segment, own: Option<u32>, radius_m: f64) -> Occlusion {
+        let blocked_from = |from: DVec3| self.any_hit(&Segment { from, ..*segment }, own).is_some();
+        let blocked = blocked_from(segment.from);
+        let certain = DVec3::AXES.iter().all(|&axis| {
+            let step = axis * (3.0f64.sqrt() * radius_m);
+            blocked_from(segment.from + step) == blocked && blocked_from(segment.from - step) == blocked
+        });
+        match (certain, blocked) {
+            (false, _) => Occlusion::Doubtful,
+            (true, true) => Occlusion::Blocked,
+            (true, false) => Occlusion::Clear,
+        }
+    }
+}
