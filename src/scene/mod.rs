@@ -1,15 +1,27 @@
 //! Scenes: from `scene.toml` and OBJ/MTL files to one validated, immutable [`Scene`] that every other module shares.
 //!
-//! Loading has two steps: the raw files ([`file`], [`obj`]) say what somebody wrote, with lines for error messages;
-//! [`build`] checks it and makes the domain type. Transforms are applied in f64, the result is rebased to an
+//! Loading has two steps: the raw files ([`file`] and `obj`) say what somebody wrote, with lines for error messages;
+//! `build` checks it and makes the domain type. Transforms are applied in f64, the result is rebased to an
 //! origin of the scene's own, and only then is every coordinate rounded, once, to f32. Technique and truth share those
 //! rounded numbers, so a scene 10⁶ m from the origin loses nothing.
 
+mod bare;
+mod build;
 mod camera;
+mod error;
+pub mod file;
+mod folder;
 mod light;
+mod load;
+mod obj;
+mod source;
 
+pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
+pub use error::{Place, SceneError};
+pub use file::SceneFile;
 pub use light::{Falloff, Light, LightKind, Segment};
+pub use load::{LoadOptions, Placement, load};
 
 use glam::{DVec3, DVec4, UVec2, Vec3};
 use std::ops::Range;
@@ -88,6 +100,21 @@ pub struct Material {
     pub shininess: f32,
     /// Opacity d, 0..=1: alpha of composites only; every triangle casts fully.
     pub opacity: f32,
+}
+
+impl Default for Material {
+    /// A matt light grey, for triangles without a material.
+    fn default() -> Self {
+        Self {
+            name: "default".into(),
+            ambient: Vec3::splat(0.8),
+            diffuse: Vec3::splat(0.8),
+            specular: Vec3::ZERO,
+            emission: Vec3::ZERO,
+            shininess: 1.0,
+            opacity: 1.0,
+        }
+    }
 }
 
 /// A receiver plane of the planar techniques.
