@@ -35,6 +35,11 @@ for package in json.load(open(sys.argv[1]))["packages"]:
         print(os.path.dirname(package["manifest_path"]))' "$work/metadata.json" "$1"
 }
 
+# download PACKAGE: its .deb into the work folder. apt's sandbox user could not write there.
+download() {
+    (cd "$work" && apt-get download -qq -o APT::Sandbox::User=root "$1")
+}
+
 # The bunny as the installed package has it, or out of the package alone: glmark2 itself is not needed.
 bunny() {
     model=usr/share/glmark2/models/bunny.obj
@@ -46,9 +51,10 @@ bunny() {
         echo "no apt-get here: please put Debian's glmark2-data in place, so that /$model exists" >&2
         exit 3
     fi
-    [ -n "$(apt-cache madison glmark2-data 2>/dev/null)" ] || "$setup/apt.sh"
-    # The sandbox user could not write into our folder.
-    (cd "$work" && apt-get download -qq -o APT::Sandbox::User=root glmark2-data)
+    if ! download glmark2-data 2>/dev/null; then # package lists missing or out of date
+        "$setup/apt.sh"
+        download glmark2-data
+    fi
     dpkg-deb --extract "$work"/glmark2-data_*.deb "$work/glmark2-data"
     mv "$work/glmark2-data/$model" "$work/bunny.obj"
 }
