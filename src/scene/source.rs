@@ -63,7 +63,7 @@ fn with_hint(message: &str) -> String {
     let message = message.trim_end();
     if message.contains("missing field") {
         format!("{message}: this key has no default, write it")
-    } else if message.contains("expected a sequence") {
+    } else if message.contains("expected a sequence") || message.contains("expected an array") {
         format!("{message}: lists are written [x, y, z], repeated tables [[mesh]], [[light]], [[plane]], [[budget]]")
     } else {
         message.to_owned()
