@@ -1,5 +1,7 @@
 //! Scene files end to end: what loads, what is refused and with which words, and that nothing makes the loader panic.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "helpers of tests fail by panicking")]
+
 use glam::{DVec3, UVec2, Vec3};
 use gnomon::scene::{
     Falloff, Far, LightKind, LoadOptions, Placement, Scene, SceneFile, file::MeshEntry, load, scene_file_for_obj,

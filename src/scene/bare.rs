@@ -31,7 +31,7 @@ const SUN_DIRECTION: [f64; 3] = [0.6, -0.96, -0.54];
 /// W/m²: makes a white surface that faces the sun nearly white (3/π).
 const SUN_IRRADIANCE: [f64; 3] = [3.0; 3];
 
-/// The scene file that [`super::load`] uses for a bare OBJ. Paths in it are relative to the OBJ's folder, which is
+/// The scene file that [`super::load()`] uses for a bare OBJ. Paths in it are relative to the OBJ's folder, which is
 /// where to write it.
 ///
 /// # Errors

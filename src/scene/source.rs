@@ -2,7 +2,7 @@
 //! where the value stands.
 //!
 //! Unknown keys are found here, before serde sees the text, because serde's own message cannot name the nearest known
-//! key. The known keys are the fields of the structs in [`super::file`]; there is no second list to keep in step.
+//! key. The known keys are the fields of the structs in [`mod@super::file`]; there is no second list to keep in step.
 
 use super::{
     error::{Place, SceneError},

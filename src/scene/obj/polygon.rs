@@ -62,6 +62,9 @@ pub(super) fn check_flat_and_convex(corners: &[DVec3]) -> Result<(), Fault> {
 fn in_unit_size(corners: &[DVec3]) -> Vec<DVec3> {
     let first = corners.first().copied().unwrap_or_default();
     let size = corners.iter().map(|&c| (c - first).abs().max_element()).fold(0.0, f64::max);
+    if size == 0.0 {
+        return vec![DVec3::ZERO];
+    }
     let mut unit: Vec<DVec3> = corners.iter().map(|&c| (c - first) / size).collect();
     unit.dedup();
     if unit.len() > 1 && unit.first() == unit.last() {
