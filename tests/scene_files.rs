@@ -418,7 +418,9 @@ const PLACED_ULPS: f32 = 1.0;
 
 #[test]
 fn translation_leaves_the_rebased_scene_unchanged() {
-    let folder = folder(SCENE, MODEL);
+    // Heights that no f32 near 10⁶ can hold.
+    let model = MODEL.replace("0.5", "0.3");
+    let folder = folder(SCENE, &model);
     let plain = load_folder(folder.path(), &LoadOptions::default()).unwrap();
     let translate = DVec3::new(1e6, -1e6, 1e6);
     let placement = Placement { translate, ..Placement::default() };
@@ -431,12 +433,16 @@ fn translation_leaves_the_rebased_scene_unchanged() {
         .replace("[0, 3, 6]", "[1000000, -999997, 1000006]")
         .replace("[0, 0.5, 0]", "[1000000, -999999.5, 1000000]")
         .replace("[2, 5, 1]", "[1000002, -999995, 1000001]");
-    let far = load_texts(&far_text, MODEL).unwrap();
+    let far = load_texts(&far_text, &model).unwrap();
     let ulp = 8.0 * f32::EPSILON;
     for (a, b) in plain.positions.iter().zip(&far.positions) {
         assert!((a - b).abs().max_element() <= PLACED_ULPS * ulp, "{a} {b}");
     }
     assert_eq!((far.camera.eye, far.camera.target), (plain.camera.eye, plain.camera.target));
+    // Rounding before rebasing would fail this test.
+    let rounded_first = |p: Vec3| (p.as_dvec3() + translate).as_vec3().as_dvec3() - translate;
+    let worst = plain.positions.iter().map(|&p| (rounded_first(p) - p.as_dvec3()).abs().max_element());
+    assert!(worst.fold(0.0, f64::max) > 1e3 * f64::from(PLACED_ULPS * ulp));
 }
 
 #[test]
@@ -555,13 +561,15 @@ fn mutated(text: &'static str) -> impl Strategy<Value = Vec<u8>> {
 }
 
 /// What must hold of any scene that loads.
-fn assert_valid(scene: &Scene) {
-    assert!(scene.positions.iter().all(|p| p.is_finite()));
-    assert!(scene.triangles.iter().flatten().all(|&i| (i as usize) < scene.positions.len()));
-    assert!(scene.corner_normals.iter().flatten().all(|n| n.is_finite()));
-    assert!(scene.triangle_material.iter().all(|&i| (i as usize) < scene.materials.len()));
-    assert_eq!(scene.meshes.last().unwrap().triangles.end as usize, scene.triangles.len());
-    assert!(scene.camera.clip_from_world(scene.image_size).is_finite());
+fn is_valid(scene: &Scene) -> bool {
+    let triangles = scene.triangles.len();
+    scene.positions.iter().all(|p| p.is_finite())
+        && scene.triangles.iter().flatten().all(|&i| (i as usize) < scene.positions.len())
+        && scene.corner_normals.iter().flatten().all(|n| n.is_finite())
+        && scene.triangle_material.iter().all(|&i| (i as usize) < scene.materials.len())
+        && [scene.corner_normals.len(), scene.triangle_material.len()] == [triangles; 2]
+        && scene.meshes.last().is_some_and(|mesh| mesh.triangles.end as usize == triangles)
+        && scene.camera.clip_from_world(scene.image_size).is_finite()
 }
 
 fn load_bytes(scene: &[u8], model: &[u8], mtl: &[u8]) {
@@ -570,7 +578,7 @@ fn load_bytes(scene: &[u8], model: &[u8], mtl: &[u8]) {
     fs::write(folder.path().join("model.obj"), model).unwrap();
     fs::write(folder.path().join("m.mtl"), mtl).unwrap();
     match load(folder.path(), &LoadOptions::default()) {
-        Ok(scene) => assert_valid(&scene),
+        Ok(scene) => assert!(is_valid(&scene), "{scene:?}"),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
@@ -625,5 +633,12 @@ proptest! {
 fn the_files_the_mutations_start_from_are_valid() {
     let folder = folder(FULL_SCENE, FULL_MODEL);
     fs::write(folder.path().join("m.mtl"), FULL_MTL).unwrap();
-    assert_valid(&load(folder.path(), &LoadOptions::default()).unwrap());
+    let scene = load(folder.path(), &LoadOptions::default()).unwrap();
+    assert!(is_valid(&scene));
+    let mut broken = scene.clone();
+    broken.positions[0].x = f32::NAN;
+    assert!(!is_valid(&broken));
+    let mut broken = scene;
+    broken.triangles[0][1] = 99;
+    assert!(!is_valid(&broken));
 }

@@ -42,7 +42,7 @@ pub struct Scene {
     pub mode: LightingMode,
     /// Ambient light Ia of the lighting model, linear RGB.
     pub ambient: Vec3,
-    /// The point of the scene file's world that became (0, 0, 0), in f64 metres.
+    /// The point of the scene file's world (after [`LoadOptions::placement`]) that became (0, 0, 0), in f64 metres.
     pub origin_in_file: DVec3,
     /// Vertex positions in the rebased world, rounded once.
     pub positions: Vec<Vec3>,
