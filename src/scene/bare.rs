@@ -31,7 +31,7 @@ const SUN_DIRECTION: [f64; 3] = [0.6, -0.96, -0.54];
 /// W/m²: makes a white surface that faces the sun nearly white (3/π).
 const SUN_IRRADIANCE: [f64; 3] = [3.0; 3];
 
-/// The scene file that [`super::load`] uses for a bare OBJ. Paths in it are relative to the OBJ's folder, which is
+/// The scene file that [`super::load()`] uses for a bare OBJ. Paths in it are relative to the OBJ's folder, which is
 /// where to write it.
 ///
 /// # Errors
@@ -95,9 +95,12 @@ fn meshes(file: &str, obj: &RawObj, drawn: &[&RawObject]) -> Vec<MeshEntry> {
 fn camera(bounds: &Bounds) -> CameraEntry {
     let distance = MARGIN * bounds.radius() / (0.5 * FOV_Y_DEG).to_radians().sin();
     let eye = bounds.centre() + TOWARDS_EYE.normalize() * distance;
+    // Four digits are enough for a view, and easier to edit.
+    let digits = 10_f64.powi(3 - distance.log10().floor() as i32);
+    let short = |v: DVec3| (v * digits).round() / digits;
     CameraEntry {
-        eye: eye.to_array(),
-        target: bounds.centre().to_array(),
+        eye: short(eye).to_array(),
+        target: short(bounds.centre()).to_array(),
         up: None,
         fov_y_deg: Some(FOV_Y_DEG),
         near: None,

@@ -23,16 +23,16 @@ pub struct SceneFile {
     /// The camera.
     pub camera: CameraEntry,
     /// The meshes, at least one.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mesh: Vec<MeshEntry>,
     /// The lights, at least one.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightEntry>,
     /// Receiver planes of the planar techniques.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plane: Vec<PlaneEntry>,
     /// What `check` enforces.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetEntry>,
 }
 

@@ -1,6 +1,6 @@
 //! Scenes: from `scene.toml` and OBJ/MTL files to one validated, immutable [`Scene`] that every other module shares.
 //!
-//! Loading has two steps: the raw files ([`file`] and `obj`) say what somebody wrote, with lines for error messages;
+//! Loading has two steps: the raw files ([`mod@file`] and `obj`) say what somebody wrote, with lines for error messages;
 //! `build` checks it and makes the domain type. Transforms are applied in f64, the result is rebased to an
 //! origin of the scene's own, and only then is every coordinate rounded, once, to f32. Technique and truth share those
 //! rounded numbers, so a scene 10⁶ m from the origin loses nothing.
@@ -42,7 +42,7 @@ pub struct Scene {
     pub mode: LightingMode,
     /// Ambient light Ia of the lighting model, linear RGB.
     pub ambient: Vec3,
-    /// The point of the scene file's world that became (0, 0, 0), in f64 metres.
+    /// The point of the scene file's world (after [`LoadOptions::placement`]) that became (0, 0, 0), in f64 metres.
     pub origin_in_file: DVec3,
     /// Vertex positions in the rebased world, rounded once.
     pub positions: Vec<Vec3>,

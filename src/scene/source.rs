@@ -2,7 +2,7 @@
 //! where the value stands.
 //!
 //! Unknown keys are found here, before serde sees the text, because serde's own message cannot name the nearest known
-//! key. The known keys are the fields of the structs in [`super::file`]; there is no second list to keep in step.
+//! key. The known keys are the fields of the structs in [`mod@super::file`]; there is no second list to keep in step.
 
 use super::{
     error::{Place, SceneError},
@@ -63,7 +63,7 @@ fn with_hint(message: &str) -> String {
     let message = message.trim_end();
     if message.contains("missing field") {
         format!("{message}: this key has no default, write it")
-    } else if message.contains("expected a sequence") {
+    } else if message.contains("expected a sequence") || message.contains("expected an array") {
         format!("{message}: lists are written [x, y, z], repeated tables [[mesh]], [[light]], [[plane]], [[budget]]")
     } else {
         message.to_owned()

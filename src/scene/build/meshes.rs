@@ -107,35 +107,33 @@ impl Parts {
         &self.files[part.file].objects[part.object]
     }
 
-    /// Chooses the scene's own origin, and checks that all meshes can be told apart from it in f32.
+    /// Chooses the scene's own origin, and checks that f32 can hold the meshes around it.
     pub(super) fn frame(&self, source: &Source, placement: &Placement) -> Result<Frame, SceneError> {
-        let placed = Frame::placed(placement.scale, placement.translate);
-        let mut whole: Option<Bounds> = None;
-        for part in &self.parts {
-            let world_from_object = placed.after(&part.world_from_object);
-            let points = || self.object(part).positions.iter().map(|&p| world_from_object.point(p));
-            if points().any(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_M) {
-                let problem =
-                    format!("is placed over {MAX_COORDINATE_M:e} m from the origin: scale it down or move it");
-                return Err(Entry::new(source, format!("mesh[{}]", part.entry)).fault("file", problem));
-            }
-            let Some(bounds) = Bounds::of(points()) else { continue };
-            whole = Some(whole.map_or(bounds, |w| Bounds { min: w.min.min(bounds.min), max: w.max.max(bounds.max) }));
-        }
-        let extent = whole.map_or(0.0, |whole| (whole.max - whole.min).max_element());
+        let fault = |problem| Err(Entry::root(source).fault("mesh", problem));
         let vertices: usize = self.parts.iter().map(|part| self.object(part).positions.len()).sum();
         let triangles: usize = self.parts.iter().map(|part| self.object(part).triangles.len()).sum();
-        match whole {
-            Some(whole) if extent >= MIN_EXTENT_M && vertices.max(triangles) < u32::MAX as usize => {
-                Ok(placed.rebased(&whole))
-            }
-            Some(_) if extent >= MIN_EXTENT_M => Err(Entry::root(source)
-                .fault("mesh", format!("holds {vertices} vertices and {triangles} triangles: must be below 2^32"))),
-            _ => Err(Entry::root(source).fault(
-                "mesh",
-                format!("spans {extent:e} m in all: must span at least {MIN_EXTENT_M:e} m, scale it up"),
-            )),
+        if vertices.max(triangles) >= u32::MAX as usize {
+            return fault(format!("holds {vertices} vertices and {triangles} triangles: must be below 2^32"));
         }
+        let placed = Frame::placed(placement.scale, placement.translate);
+        let boxes =
+            self.parts.iter().map(|part| self.placed_box(source, part, &placed)).collect::<Result<Vec<_>, _>>()?;
+        let whole = union(boxes.into_iter().flatten()).unwrap_or(Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
+        let extent = (whole.max - whole.min).max_element();
+        if extent < MIN_EXTENT_M {
+            return fault(format!("spans {extent:e} m in all: must span at least {MIN_EXTENT_M:e} m, scale it up"));
+        }
+        Ok(placed.rebased(&whole))
+    }
+
+    fn placed_box(&self, source: &Source, part: &Part, placed: &Frame) -> Result<Option<Bounds>, SceneError> {
+        let world_from_object = placed.after(&part.world_from_object);
+        let points = || self.object(part).positions.iter().map(|&p| world_from_object.point(p));
+        if points().any(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_M) {
+            let problem = format!("is placed over {MAX_COORDINATE_M:e} m from the origin: scale it down or move it");
+            return Err(Entry::new(source, format!("mesh[{}]", part.entry)).fault("file", problem));
+        }
+        Ok(Bounds::of(points()))
     }
 
     /// Of all files.

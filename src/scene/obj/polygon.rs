@@ -16,7 +16,7 @@ const BEND_TOLERANCE: f64 = 1e-2;
 /// digits put corners of straight edges off by less.
 const DENT_TOLERANCE: f64 = 1e-3;
 
-/// Normals shorter than this, in polygon sizes squared, belong to polygons without area: nothing to split wrongly.
+/// Normals shorter than this, in polygon sizes squared, belong to triangles or polygons without area.
 const AREA_TOLERANCE: f64 = 1e-12;
 
 /// Why a polygon cannot be split into a fan.
@@ -32,7 +32,11 @@ pub(super) enum Fault {
 /// degenerate and counted as such.
 pub(super) fn check_flat_and_convex(corners: &[DVec3]) -> Result<(), Fault> {
     let corners = in_unit_size(corners);
-    let Some(normal) = newell_normal(&corners) else { return Ok(()) };
+    if corners.windows(2).all(|edge| edge[0].cross(edge[1]).length() <= AREA_TOLERANCE) {
+        return Ok(());
+    }
+    // Triangles with area whose normals cancel: an hourglass.
+    let normal = newell_normal(&corners).ok_or(Fault::Concave)?;
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     let bend = corners.iter().map(|&c| (c - middle).dot(normal).abs()).fold(0.0, f64::max);
     if bend > BEND_TOLERANCE {
@@ -58,6 +62,9 @@ pub(super) fn check_flat_and_convex(corners: &[DVec3]) -> Result<(), Fault> {
 fn in_unit_size(corners: &[DVec3]) -> Vec<DVec3> {
     let first = corners.first().copied().unwrap_or_default();
     let size = corners.iter().map(|&c| (c - first).abs().max_element()).fold(0.0, f64::max);
+    if size == 0.0 {
+        return vec![DVec3::ZERO];
+    }
     let mut unit: Vec<DVec3> = corners.iter().map(|&c| (c - first) / size).collect();
     unit.dedup();
     if unit.len() > 1 && unit.first() == unit.last() {
@@ -110,7 +117,8 @@ mod tests {
         let bow_tie = in_plane(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 1.0)]);
         let star: Vec<_> = (0..5).map(|i| (TAU * f64::from(2 * i) / 5.0).sin_cos()).collect();
         let spike = in_plane(&[(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (1.0, 0.0), (0.0, 1.0)]);
-        for polygon in [arrow, bow_tie, in_plane(&star), spike] {
+        let hourglass = in_plane(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]);
+        for polygon in [arrow, bow_tie, hourglass, in_plane(&star), spike] {
             assert_eq!(check_flat_and_convex(&polygon), Err(Fault::Concave), "{polygon:?}");
         }
     }

@@ -286,7 +286,7 @@ mod tests {
             ("f 1/1 2/1 3/1\n", "there is no texture coordinate 1"),
             ("f 99999999999999999999 2 3\n", "is no vertex index"),
             ("f 1///1 2 3\n", "is no face corner"),
-            ("f //1 2 3\n", "is no face corner"),
+            ("f // 2 3\n", "is no face corner"),
             ("f 1 2\n", "at least 3 corners"),
             ("f 1\n", "at least 3 corners"),
             ("usemtl\n", "usemtl needs"),
