@@ -1,2 +1,5 @@
 //! The `gnomon` command; everything it does lives in the library.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    gnomon::cli::main()
+}

@@ -4,10 +4,12 @@
 //! made once and shared by every evaluation.
 
 mod cost;
+mod diagnose;
 mod jitter;
 mod view;
 
-pub use jitter::{JitterStats, jittered};
+pub use diagnose::{BiasVerdict, Diagnosis, Outcome, diagnose, search_bias};
+pub use jitter::jittered;
 pub use view::{Question, View};
 
 use crate::cause::Replay;
@@ -84,7 +86,7 @@ pub fn evaluate<'v>(
     effort: Effort,
     watch: &dyn Watch,
 ) -> Result<Evaluation<'v>, EvaluateError> {
-    let prepared = spec.technique().prepare(spec, view.job(question))?;
+    let prepared = spec.technique().prepare(spec, view.job(question.light, &question.classes))?;
     let measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
     let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, WRONG_ABOVE_HARD)?;
     if watch.interrupted() {

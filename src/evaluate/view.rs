@@ -72,22 +72,22 @@ impl<'s> View<'s> {
         let affordable = CROSS_CHECK_TESTS / self.casters.triangle_count().max(1);
         let samples = CROSS_CHECKED.min(affordable as u32);
         let brute_disagreements =
-            truth::cross_check(self.scene, light, &self.receivers, &classes, &truth.mask, samples);
+            truth::cross_check(self.scene, light, &self.receivers, &classes, watch, &truth.mask, samples)?;
         Ok(Question { light, classes, truth, brute_disagreements })
     }
 
-    /// What a technique gets for a question.
+    /// What a technique is asked about a light, given the class of every pixel.
     #[must_use]
-    pub fn job<'j>(&'j self, question: &'j Question<'_>) -> Job<'j> {
+    pub fn job<'j>(&'j self, light: &'j Light, classes: &'j [PixelClass]) -> Job<'j> {
         Job {
             gpu: self.gpu,
             scene: self.scene,
             geometry: &self.geometry,
             casters: &self.casters,
             adjacency: &self.adjacency,
-            light: question.light,
+            light,
             receivers: &self.receivers,
-            classes: &question.classes,
+            classes,
         }
     }
 }

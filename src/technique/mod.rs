@@ -19,7 +19,7 @@ pub use spec::{Spec, SpecError};
 pub use unsupported::Unsupported;
 
 use crate::cast::Casters;
-use crate::cause::Replay;
+use crate::cause::{Cause, Replay};
 use crate::gpu::{Geometry, Gpu, GpuError, PassRecord};
 use crate::inspect::Adjacency;
 use crate::mask::Mask;
@@ -50,6 +50,8 @@ pub trait Technique: Sync {
     /// # Errors
     /// The typed reason why not, which becomes a report row.
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported>;
+    /// Specifications that would lessen errors of this cause, the most promising first: one knob changed in each.
+    fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec>;
     /// Builds everything the runs need.
     ///
     /// # Errors

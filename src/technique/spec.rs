@@ -115,6 +115,12 @@ impl Spec {
         Self::parse(&format!("{}:{}", self.technique.id(), typed.join(",")))
     }
 
+    /// Every parameter with its value, in declared order.
+    #[must_use]
+    pub fn values(&self) -> &[(&'static str, Value)] {
+        &self.values
+    }
+
     /// Only the parameters that differ from their defaults.
     #[must_use]
     pub fn short(&self) -> String {

@@ -15,6 +15,7 @@ mod lookup;
 mod passes;
 mod prepared;
 pub mod projection;
+mod remedies;
 mod replay;
 mod settings;
 
@@ -25,6 +26,7 @@ pub use settings::{Fit, Settings};
 
 use super::param::{Choice, Kind, Param, Value};
 use super::{Job, Prepared, Spec, Technique, TechniqueError, Unsupported};
+use crate::cause::Cause;
 use crate::gpu::Gpu;
 use crate::scene::{Light, Scene};
 use std::sync::LazyLock;
@@ -54,6 +56,9 @@ impl Technique for Map {
             return Err(Unsupported::MissingFeature { what });
         }
         settings.projection.supports(scene, light, &settings)
+    }
+    fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
+        remedies::remedies(spec, cause)
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;

@@ -1,0 +1,136 @@
+//! `gnomon diagnose`: what is wrong, why, and what each fix really does.
+
+use super::args::DiagnoseArgs;
+use super::context::{lights, load, open_gpu};
+use super::exit;
+use super::report::{command, quoted};
+use super::terminal::{Terminal, say};
+use crate::cause::Cause;
+use crate::evaluate::{
+    BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias,
+};
+use crate::scene::Light;
+use crate::technique::{Spec, TechniqueError};
+
+/// The biases compared when self-shadowing or detached contacts are present: parameter and value.
+const BIASES: [(&str, &str); 5] =
+    [("bias", "none"), ("bias_slope", "1"), ("bias_slope", "2"), ("bias_slope", "4"), ("bias", "closed-form")];
+
+/// Timed runs of the configuration as it is, like those of a trial.
+const EFFORT: Effort = Effort { timed_runs: 1, explains: true };
+
+pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8> {
+    let spec = Spec::parse(&args.technique)?;
+    let scene = load(&args.scene.scene, args.scene.size)?;
+    let lights = lights(&scene, args.scene.light.as_deref())?;
+    let gpu = open_gpu()?;
+    let view = View::new(&gpu, &scene)?;
+    for light in lights {
+        let question = view.ask(light, terminal)?;
+        say(&format!("{}, light '{}', {}", scene.name, light.name, spec.short()));
+        let evaluation = match evaluate(&view, &question, &spec, EFFORT, terminal) {
+            Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
+                say(&format!("  {why}\n"));
+                continue;
+            }
+            other => other?,
+        };
+        let before = Outcome::of(&evaluation);
+        let asked = evaluation.verdict.pixels.asked;
+        say(&format!("  {} of {asked} asked pixels are wrong\n", before.wrong));
+        let diagnoses = diagnose(&view, &question, &spec, &evaluation, terminal)?;
+        terminal.finish();
+        for diagnosis in &diagnoses {
+            say(&described(args, light, &spec, diagnosis, &before, scene.image_size.x));
+        }
+        let is_bias = |d: &Diagnosis| matches!(d.cause, Cause::Acne | Cause::Curvature | Cause::PeterPanning);
+        if diagnoses.iter().any(is_bias) {
+            let found = search_bias(&view, &question, &spec, &BIASES, terminal)?;
+            terminal.finish();
+            found.iter().for_each(|verdict| say(&bias_verdict(verdict)));
+        }
+        let best = diagnoses.iter().flat_map(|d| &d.trials).filter_map(|(spec, outcome)| Some((spec, outcome.as_ref().ok()?)));
+        if let Some((fix, outcome)) = best.min_by_key(|(_, outcome)| outcome.wrong).filter(|(_, o)| o.wrong < before.wrong) {
+            say(&format!(
+                "best fix tried: {} leaves {} wrong pixels\nnext step: {}\n",
+                fix.short(),
+                outcome.wrong,
+                command(&args.scene.scene, light, fix, scene.image_size, 0)
+            ));
+        }
+    }
+    Ok(exit::OK)
+}
+
+fn described(
+    args: &DiagnoseArgs,
+    light: &Light,
+    spec: &Spec,
+    diagnosis: &Diagnosis,
+    before: &Outcome,
+    width: u32,
+) -> String {
+    let pixels: Vec<String> = diagnosis.worst.iter().map(|p| format!("{},{}", p % width, p / width)).collect();
+    let mut text = format!(
+        "{}: {} px, {:.1} % of the wrong ones, sum {:+.1}\n  {}\n  e.g. at {}\n",
+        diagnosis.cause.name(),
+        diagnosis.pixels,
+        100.0 * diagnosis.share,
+        diagnosis.sum,
+        diagnosis.cause.meaning(),
+        pixels.join("  ")
+    );
+    for (fix, outcome) in &diagnosis.trials {
+        let effect = match outcome {
+            Ok(after) => effect(diagnosis.cause, before, after),
+            Err(why) => why.clone(),
+        };
+        text += &format!("  tried {}: {effect}\n", changed(spec, fix));
+    }
+    if let Some(pixel) = pixels.first() {
+        text += &format!(
+            "  look closer: gnomon explain {} -t {} --light {} --pixel {pixel}\n",
+            quoted(&args.scene.scene.to_string_lossy()),
+            quoted(&spec.short()),
+            quoted(&light.name)
+        );
+    }
+    text
+}
+
+/// "bias none → closed-form": the parameters in which two specifications differ.
+fn changed(from: &Spec, to: &Spec) -> String {
+    let changes = from.values().iter().zip(to.values()).filter(|(a, b)| a != b);
+    changes.map(|((name, old), (_, new))| format!("{name} {old} → {new}")).collect::<Vec<_>>().join(", ")
+}
+
+/// "acne 3120 → 0 px, peter-panning 0 → 44 px, wrong 3200 → 124 px, GPU time +2 %".
+fn effect(cause: Cause, before: &Outcome, after: &Outcome) -> String {
+    let mut parts = vec![format!("{} {} → {} px", cause.name(), before.of_cause(cause), after.of_cause(cause))];
+    for other in Cause::ALL.into_iter().filter(|other| *other != cause) {
+        let (old, new) = (before.of_cause(other), after.of_cause(other));
+        if old != new {
+            parts.push(format!("{} {old} → {new} px", other.name()));
+        }
+    }
+    parts.push(format!("all wrong {} → {} px", before.wrong, after.wrong));
+    let growth = |old: f64, new: f64| 100.0 * (new / old - 1.0);
+    if let (Some(old), Some(new)) = (before.cost.gpu_ms, after.cost.gpu_ms) {
+        parts.push(format!("GPU time {:+.0} %", growth(old.median, new.median)));
+    }
+    parts.push(format!("memory {:+.0} %", growth(before.cost.bytes as f64, after.cost.bytes as f64)));
+    parts.join(", ")
+}
+
+fn bias_verdict(verdict: &BiasVerdict) -> String {
+    let tried: Vec<String> = verdict
+        .tried
+        .iter()
+        .map(|(spec, own, detached)| format!("  {}: self-shadowing {own} px, peter-panning {detached} px", spec.short()))
+        .collect();
+    let conclusion = verdict.free_of_both.as_ref().map_or_else(
+        || "no bias value tried clears both".to_owned(),
+        |spec| format!("{} clears both", spec.short()),
+    );
+    format!("biases compared:\n{}\n  {conclusion}\n", tried.join("\n"))
+}

@@ -1,0 +1,56 @@
+//! `gnomon list`: the scenes of a folder, the techniques and their parameters.
+
+use super::args::{ListArgs, Listed};
+use super::exit;
+use super::terminal::{complain, say};
+use crate::scene::{self, LoadOptions};
+use crate::technique::{Technique, registry};
+use anyhow::Context;
+use comfy_table::{ContentArrangement, Table, presets};
+
+pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
+    match args.what {
+        Listed::Techniques => registry().iter().for_each(|technique| say(&described(*technique))),
+        Listed::Scenes => {
+            let folder = &args.folder;
+            let entries = std::fs::read_dir(folder)
+                .with_context(|| format!("{}: cannot be read; name the folder with --folder", folder.display()))?;
+            let mut paths: Vec<_> = entries.filter_map(Result::ok).map(|entry| entry.path()).collect();
+            paths.retain(|path| path.join("scene.toml").is_file());
+            paths.sort();
+            let mut table = plain_table();
+            for path in paths {
+                match scene::load(&path, &LoadOptions::default()) {
+                    Ok(scene) => {
+                        let lights: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+                        let triangles = format!("{} triangles", scene.triangles.len());
+                        table.add_row([path.display().to_string(), triangles, lights.join(", "), scene.about]);
+                    }
+                    Err(error) => complain(&format!("warning: {error}")),
+                }
+            }
+            say(&table.to_string());
+        }
+    }
+    Ok(exit::OK)
+}
+
+fn plain_table() -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);
+    table
+}
+
+fn described(technique: &dyn Technique) -> String {
+    let mut table = plain_table();
+    for param in technique.params() {
+        let name = if param.unit.is_empty() { param.name.to_owned() } else { format!("{} [{}]", param.name, param.unit) };
+        table.add_row([name, param.default.to_string(), param.range(), param.help.to_owned()]);
+    }
+    format!(
+        "{}: {}\n  {}\n  parameter, default, values:\n{table}\n",
+        technique.id(),
+        technique.about(),
+        technique.citation()
+    )
+}

@@ -1,0 +1,43 @@
+//! `gnomon truth` and `gnomon mask`: one light's visibility as an image that other programs can read.
+
+use super::args::{MaskArgs, TruthArgs};
+use super::context::{load, only_light, open_gpu};
+use super::exit;
+use super::output::{ImageFormat, OutFile};
+use super::terminal::{Terminal, say};
+use crate::evaluate::View;
+use crate::report::mask_image::{MaskImage, MaskImageError};
+use crate::technique::Spec;
+
+pub(super) fn truth(args: &TruthArgs, terminal: &Terminal) -> anyhow::Result<u8> {
+    let scene = load(&args.scene.scene, args.scene.size)?;
+    let light = only_light(&scene, &args.scene)?;
+    let out = OutFile::open(&args.output)?;
+    let gpu = open_gpu()?;
+    let view = View::new(&gpu, &scene)?;
+    let truth = view.ask(light, terminal)?.truth.mask;
+    out.write(&encoded(&MaskImage::from(&truth), out.format)?)?;
+    say(&format!("wrote {}", args.output.display()));
+    Ok(exit::OK)
+}
+
+pub(super) fn mask(args: &MaskArgs) -> anyhow::Result<u8> {
+    let spec = Spec::parse(&args.technique)?;
+    let scene = load(&args.scene.scene, args.scene.size)?;
+    let light = only_light(&scene, &args.scene)?;
+    let out = OutFile::open(&args.output)?;
+    let gpu = open_gpu()?;
+    let view = View::new(&gpu, &scene)?;
+    let classes = view.receivers.classify(&scene, light);
+    let mask = spec.technique().prepare(&spec, view.job(light, &classes))?.run()?.mask;
+    out.write(&encoded(&MaskImage::from(&mask), out.format)?)?;
+    say(&format!("wrote {}", args.output.display()));
+    Ok(exit::OK)
+}
+
+fn encoded(image: &MaskImage, format: ImageFormat) -> Result<Vec<u8>, MaskImageError> {
+    match format {
+        ImageFormat::Png => image.to_png(),
+        ImageFormat::Exr => image.to_exr(),
+    }
+}

@@ -1,0 +1,53 @@
+//! The command line: the only place that reads and writes files and talks to the terminal, and the only one that uses
+//! `anyhow`. Every command prints what it found and the command for the next step.
+
+mod args;
+mod check;
+mod context;
+mod diagnose;
+mod doctor;
+mod exit;
+mod explain;
+mod inspect;
+mod judge;
+mod list;
+mod masks;
+mod output;
+mod pictures;
+mod render;
+mod report;
+mod scaffold;
+mod terminal;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+use terminal::Terminal;
+
+/// Runs the command line of this process and returns its exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return exit::of_usage(&error),
+    };
+    let terminal = match Terminal::new() {
+        Ok(terminal) => terminal,
+        Err(error) => return exit::of_error(&error),
+    };
+    let result = match cli.command {
+        Command::Check(args) => check::run(&args, &terminal),
+        Command::Render(args) => render::run(&args, &terminal),
+        Command::Truth(args) => masks::truth(&args, &terminal),
+        Command::Mask(args) => masks::mask(&args),
+        Command::Judge(args) => judge::run(&args, &terminal),
+        Command::Inspect(args) => inspect::run(&args, &terminal),
+        Command::Explain(args) => explain::run(&args, &terminal),
+        Command::Diagnose(args) => diagnose::run(&args, &terminal),
+        Command::Scaffold(args) => scaffold::run(&args),
+        Command::List(args) => list::run(&args),
+        Command::Doctor => doctor::run(),
+    };
+    terminal.finish();
+    result.map_or_else(|error| exit::of_error(&error), ExitCode::from)
+}

@@ -1,0 +1,58 @@
+//! `gnomon render`: the scene as a picture, lit with a technique's shadows or the exact ones.
+
+use super::args::RenderArgs;
+use super::context::{lights, load, open_gpu};
+use super::exit;
+use super::output::{ImageFormat, OutFile};
+use super::terminal::{Terminal, say};
+use crate::evaluate::View;
+use crate::mask::{Mask, Truth, Visibility};
+use crate::receiver::PixelClass;
+use crate::scene::Light;
+use crate::shade::shade;
+use crate::technique::Spec;
+
+pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> {
+    let spec = args.technique.as_deref().map(Spec::parse).transpose()?;
+    let scene = load(&args.scene.scene, args.scene.size)?;
+    let lights = lights(&scene, args.scene.light.as_deref())?;
+    let out = OutFile::open(&args.output)?;
+    let gpu = open_gpu()?;
+    let view = View::new(&gpu, &scene)?;
+    let masks = lights
+        .into_iter()
+        .map(|light| Ok((light, shadows(&view, light, spec.as_ref(), terminal)?)))
+        .collect::<anyhow::Result<Vec<(&Light, Mask)>>>()?;
+    let lit: Vec<(&Light, &Mask)> = masks.iter().map(|(light, mask)| (*light, mask)).collect();
+    let picture = shade(&scene, &view.receivers, &lit);
+    let bytes = match out.format {
+        ImageFormat::Png => picture.to_png(),
+        ImageFormat::Exr => picture.to_exr(),
+    }?;
+    out.write(&bytes)?;
+    say(&format!("wrote {}", args.output.display()));
+    Ok(exit::OK)
+}
+
+/// A light's visibility at every pixel it could reach: 0 on surfaces turned away, an undecided pixel half lit.
+fn shadows(view: &View<'_>, light: &Light, spec: Option<&Spec>, terminal: &Terminal) -> anyhow::Result<Mask> {
+    let classes = view.receivers.classify(view.scene, light);
+    let mut mask = match spec {
+        Some(spec) => spec.technique().prepare(spec, view.job(light, &classes))?.run()?.mask,
+        None => {
+            let truth = view.ask(light, terminal)?.truth.mask;
+            let visibility = |truth: Truth| match truth {
+                Truth::Known(visibility) => Some(visibility),
+                Truth::Undecided => Visibility::new(0.5),
+            };
+            let pixels = truth.pixels.into_iter().map(|pixel| pixel.and_then(visibility)).collect();
+            Mask { size: truth.size, pixels }
+        }
+    };
+    for (pixel, class) in mask.pixels.iter_mut().zip(&classes) {
+        if *class == PixelClass::FacingAway {
+            *pixel = Some(Visibility::SHADOW);
+        }
+    }
+    Ok(mask)
+}

@@ -1,0 +1,167 @@
+//! What is wrong with a technique's shadows, and which knob helps: every fix is tried, its effect and its side effects
+//! are measured.
+
+use super::{Effort, EvaluateError, Evaluation, Question, View, evaluate};
+use crate::cause::Cause;
+use crate::technique::{Cost, Spec};
+use crate::verdict::Ledger;
+use crate::watch::{Interrupted, Watch};
+use std::collections::BTreeMap;
+
+/// Remedies tried per cause.
+const TRIED_PER_CAUSE: usize = 3;
+/// Worst pixels named per cause.
+const NAMED_PIXELS: usize = 3;
+/// Timed runs of a trial: enough for a ratio beside the counted work.
+const TRIAL: Effort = Effort { timed_runs: 1, explains: true };
+
+/// What one evaluation came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Wrong pixels per cause.
+    pub wrong_by_cause: BTreeMap<Cause, u64>,
+    /// All wrong pixels.
+    pub wrong: u64,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// One cause that is present, and what was tried against it.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// The cause.
+    pub cause: Cause,
+    /// Wrong pixels named after it.
+    pub pixels: u64,
+    /// Its share of all wrong pixels, 0..=1.
+    pub share: f64,
+    /// Signed sum of its contributions, in pixels of full visibility.
+    pub sum: f64,
+    /// Some of its pixels (`y * width + x`), the largest error first.
+    pub worst: Vec<u32>,
+    /// The fixes tried, and what came of each; a fix that cannot run says why.
+    pub trials: Vec<(Spec, Result<Outcome, String>)>,
+}
+
+/// Whether some bias is free of both self-shadowing and detached contacts.
+#[derive(Debug, Clone)]
+pub struct BiasVerdict {
+    /// The first bias tried that is free of both.
+    pub free_of_both: Option<Spec>,
+    /// Every bias tried, with its pixels of self-shadowing (acne and curvature) and of peter-panning.
+    pub tried: Vec<(Spec, u64, u64)>,
+}
+
+impl Outcome {
+    /// Sums up an evaluation.
+    #[must_use]
+    pub fn of(evaluation: &Evaluation<'_>) -> Self {
+        let wrong_by_cause = by_cause(&evaluation.ledger);
+        Self { wrong_by_cause, wrong: evaluation.verdict.pixels.wrong, cost: evaluation.cost.clone() }
+    }
+
+    /// Wrong pixels of one cause.
+    #[must_use]
+    pub fn of_cause(&self, cause: Cause) -> u64 {
+        self.wrong_by_cause.get(&cause).copied().unwrap_or(0)
+    }
+}
+
+fn by_cause(ledger: &Ledger) -> BTreeMap<Cause, u64> {
+    ledger.causes.iter().filter(|(_, share)| share.pixels > 0).map(|(cause, share)| (*cause, share.pixels)).collect()
+}
+
+/// Diagnoses an evaluation of `spec`: the causes present, the most frequent first.
+///
+/// # Errors
+/// [`Interrupted`] if the user asked to stop; a fix that fails is part of the answer.
+pub fn diagnose(
+    view: &View<'_>,
+    question: &Question<'_>,
+    spec: &Spec,
+    evaluation: &Evaluation<'_>,
+    watch: &dyn Watch,
+) -> Result<Vec<Diagnosis>, Interrupted> {
+    let mut present: Vec<(Cause, u64)> = by_cause(&evaluation.ledger).into_iter().collect();
+    present.sort_by_key(|(_, pixels)| std::cmp::Reverse(*pixels));
+    let remedies = |cause| spec.technique().remedies(spec, cause).into_iter().take(TRIED_PER_CAUSE);
+    watch.start("trying fixes", present.iter().map(|(cause, _)| remedies(*cause).count() as u64).sum());
+    // Two causes may share a fix: it is tried once.
+    let mut known: Vec<(Spec, Result<Outcome, String>)> = Vec::new();
+    let mut diagnoses = Vec::new();
+    for (cause, pixels) in present {
+        let mut trials = Vec::new();
+        for remedy in remedies(cause) {
+            let outcome = match known.iter().find(|(spec, _)| *spec == remedy) {
+                Some((_, outcome)) => outcome.clone(),
+                None => {
+                    let outcome = try_out(view, question, &remedy, watch)?;
+                    known.push((remedy.clone(), outcome.clone()));
+                    outcome
+                }
+            };
+            trials.push((remedy, outcome));
+            watch.advance(1);
+        }
+        diagnoses.push(Diagnosis {
+            cause,
+            pixels,
+            share: pixels as f64 / evaluation.verdict.pixels.wrong as f64,
+            sum: evaluation.ledger.causes.get(&cause).map_or(0.0, |share| share.sum),
+            worst: worst_pixels(evaluation, cause),
+            trials,
+        });
+    }
+    Ok(diagnoses)
+}
+
+fn try_out(
+    view: &View<'_>,
+    question: &Question<'_>,
+    spec: &Spec,
+    watch: &dyn Watch,
+) -> Result<Result<Outcome, String>, Interrupted> {
+    match evaluate(view, question, spec, TRIAL, watch) {
+        Ok(evaluation) => Ok(Ok(Outcome::of(&evaluation))),
+        Err(EvaluateError::Interrupted(interrupted)) => Err(interrupted),
+        Err(error) => Ok(Err(error.to_string())),
+    }
+}
+
+fn worst_pixels(evaluation: &Evaluation<'_>, cause: Cause) -> Vec<u32> {
+    let of_cause = evaluation.ledger.wrong.iter().filter(|(_, named)| *named == cause);
+    let mut pixels: Vec<u32> = of_cause.map(|(pixel, _)| *pixel).collect();
+    let error = |pixel: &u32| evaluation.verdict.signed_error[*pixel as usize].map_or(0.0, f64::abs);
+    pixels.sort_by(|a, b| error(b).total_cmp(&error(a)).then(a.cmp(b)));
+    // Spread over the list: neighbours on one edge tell the same story.
+    let step = (pixels.len() / NAMED_PIXELS).max(1);
+    pixels.into_iter().step_by(step).take(NAMED_PIXELS).collect()
+}
+
+/// Looks for a bias that is free of self-shadowing and of detached contacts, among the values that `changes` name
+/// (parameter and value each); `None` where the technique has no such parameter.
+///
+/// # Errors
+/// [`Interrupted`] if the user asked to stop.
+pub fn search_bias(
+    view: &View<'_>,
+    question: &Question<'_>,
+    spec: &Spec,
+    changes: &[(&str, &str)],
+    watch: &dyn Watch,
+) -> Result<Option<BiasVerdict>, Interrupted> {
+    let candidates: Vec<Spec> = changes.iter().filter_map(|(key, value)| spec.with(key, value).ok()).collect();
+    watch.start("searching a bias", candidates.len() as u64);
+    let mut verdict = BiasVerdict { free_of_both: None, tried: Vec::new() };
+    for candidate in candidates {
+        watch.advance(1);
+        let Ok(outcome) = try_out(view, question, &candidate, watch)? else { continue };
+        let self_shadow = outcome.of_cause(Cause::Acne) + outcome.of_cause(Cause::Curvature);
+        let detached = outcome.of_cause(Cause::PeterPanning);
+        if self_shadow == 0 && detached == 0 && verdict.free_of_both.is_none() {
+            verdict.free_of_both = Some(candidate.clone());
+        }
+        verdict.tried.push((candidate, self_shadow, detached));
+    }
+    Ok((!verdict.tried.is_empty()).then_some(verdict))
+}

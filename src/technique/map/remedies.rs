@@ -1,0 +1,62 @@
+//! Which knob of a map to turn against which cause.
+
+use crate::cause::Cause;
+use crate::technique::Spec;
+
+/// Largest map the family knows, texels a side.
+const LARGEST: i64 = 16_384;
+
+/// One knob changed in each; only changes that are legal and change anything.
+pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
+    let size = spec.integer("size");
+    let larger = |factor: i64| ("size", (size * factor).min(LARGEST).to_string());
+    let set = |key: &'static str, value: &str| (key, value.to_owned());
+    let (_, kernel) = spec.choice("filter");
+    let changes = match cause {
+        Cause::Acne => vec![set("bias", "closed-form"), set("bias", "slope"), larger(2)],
+        Cause::Curvature => vec![set("bias_normal_texels", "1"), larger(2), set("bias_slope", "4")],
+        Cause::PeterPanning => vec![
+            set("bias_depth_m", "0"),
+            set("bias_normal_texels", "0"),
+            set("bias_slope", "auto"),
+            set("bias_constant_ulps", "auto"),
+            set("bias", "closed-form"),
+            larger(2),
+            set("bias", "none"),
+        ],
+        Cause::EdgeAliasing => vec![larger(2), larger(4)],
+        Cause::PerspectiveAliasing | Cause::ProjectiveAliasing => vec![larger(2), larger(4), set("fit", "receivers")],
+        Cause::ClippingNear => vec![set("near_m", "auto"), set("pull_back_m", "auto"), set("fit", "scene")],
+        Cause::ClippingFar => vec![set("far_m", "auto"), set("fit", "scene")],
+        Cause::ClippingFrustum => vec![set("width_m", "auto"), set("fov_deg", "auto"), set("fit", "scene")],
+        Cause::FilterWidth if kernel > 1 => vec![larger(2), set("filter", "nearest")],
+        Cause::FilterWidth => vec![larger(2)],
+        Cause::Precision => {
+            vec![set("format", "depth32float"), set("depth_convention", "reversed"), set("bias", "closed-form")]
+        }
+        Cause::StencilOverflow
+        | Cause::OpenMesh
+        | Cause::PlanarModel
+        | Cause::AntiShadow
+        | Cause::FalseShadowBehindPlane
+        | Cause::LightBleeding
+        | Cause::TechniqueModel => Vec::new(),
+    };
+    let changed = changes.into_iter().filter_map(|(key, value)| spec.with(key, &value).ok());
+    changed.filter(|changed| changed != spec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_remedy_changes_something_and_stays_legal() {
+        let spec = Spec::parse("map:size=16384,bias=none").unwrap();
+        for cause in Cause::ALL {
+            assert!(remedies(&spec, cause).iter().all(|remedy| *remedy != spec));
+        }
+        assert!(remedies(&spec, Cause::EdgeAliasing).is_empty(), "there is no larger map");
+        assert_eq!(remedies(&spec, Cause::Acne)[0].short(), "map:size=16384");
+    }
+}
