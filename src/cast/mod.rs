@@ -25,6 +25,7 @@ mod weld;
 pub use occlusion::Occlusion;
 
 use crate::scene::{self, Bounds, Scene, Segment};
+use glam::Vec3;
 use packed::{Crossing, PackedTriangle};
 use ray::Ray;
 use std::ops::ControlFlow;
@@ -54,6 +55,8 @@ pub struct Casters {
     triangles: Vec<PackedTriangle>,
     /// Per triangle of the scene the id that stands for all triangles in its place.
     surface_of: Vec<u32>,
+    /// Per triangle of the scene its corners.
+    corners_of: Vec<[Vec3; 3]>,
     bounds: Bounds,
     triangle_count: usize,
     content_hash: u64,
@@ -64,14 +67,15 @@ impl Casters {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let surface_of = weld::surface_of_triangles(scene);
+        let corners_of = (0..scene.triangles.len() as u32).map(|t| weld::corners(scene, t)).collect::<Vec<_>>();
         let unique: Vec<u32> = scene.casting_triangles().filter(|&t| surface_of[t as usize] == t).collect();
-        let corners: Vec<_> = unique.iter().map(|&t| weld::corners(scene, t)).collect();
-        let (tree, order) = Tree::build(&corners);
-        let packed = |i: u32| PackedTriangle::new(unique[i as usize], corners[i as usize]);
+        let (tree, order) = Tree::build(&unique.iter().map(|&t| corners_of[t as usize]).collect::<Vec<_>>());
+        let in_leaves = order.into_iter().map(|i| unique[i as usize]);
         Self {
             tree,
-            triangles: order.into_iter().map(packed).collect(),
+            triangles: in_leaves.map(|t| PackedTriangle::new(t, corners_of[t as usize])).collect(),
             surface_of,
+            corners_of,
             bounds: scene.bounds_of(|mesh| mesh.casts),
             triangle_count: scene.casting_triangles().count(),
             content_hash: content_hash(scene),
@@ -150,9 +154,9 @@ impl Casters {
     ) {
         let Some(ray) = Ray::new(segment, &self.bounds, 0.0) else { return };
         self.each_candidate(&ray, own, |triangle, limit| match triangle.crossing(&ray) {
-            Crossing::Unsure if !exact::crosses(segment, &triangle.corners()) => ControlFlow::Continue(()),
-            Crossing::Crossed | Crossing::Unsure => on_hit(triangle, limit),
-            Crossing::Missed => ControlFlow::Continue(()),
+            Crossing::Unsure { .. } if exact::crosses(segment, &triangle.corners()) => on_hit(triangle, limit),
+            Crossing::Crossed => on_hit(triangle, limit),
+            Crossing::Missed | Crossing::Unsure { .. } => ControlFlow::Continue(()),
         });
     }
 

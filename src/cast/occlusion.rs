@@ -5,7 +5,8 @@
 //! rare, and only then is the verdict worked out again from starts moved along the axes.
 
 use super::Casters;
-use super::packed::Crossing;
+use super::exact;
+use super::packed::{Crossing, PackedTriangle};
 use super::ray::Ray;
 use super::scene::Segment;
 use glam::DVec3;
@@ -28,15 +29,17 @@ impl Casters {
     ///
     /// The verdict is tried at the start and at √3·`radius_m` from it, both ways along each axis: the octahedron
     /// of those six points holds the whole ball, so a plane between light and shadow that cuts the ball leaves one of
-    /// them on its other side. Another surface through the start itself is such a plane.
+    /// them on its other side. Another surface through the start itself is such a plane. What merely continues the
+    /// own triangle in its own plane, beyond an edge or a corner at which the start lies, is not another surface.
     #[must_use]
     pub fn occlusion(&self, segment: &Segment, own: Option<u32>, radius_m: f64) -> Occlusion {
         let Some(ray) = Ray::new(segment, &self.bounds, radius_m) else { return Occlusion::Clear };
-        let (mut blocked, mut unsure) = (false, false);
+        let (mut blocked, mut unsure, mut continuation) = (false, false, Vec::new());
         self.each_candidate(&ray, own, |triangle, _| {
             match triangle.crossing(&ray) {
                 Crossing::Missed => {}
-                Crossing::Unsure => unsure = true,
+                Crossing::Unsure { inside: false } if self.continues(own, triangle) => continuation.push(triangle.id),
+                Crossing::Unsure { .. } => unsure = true,
                 Crossing::Crossed => {
                     blocked = true;
                     return ControlFlow::Break(());
@@ -47,13 +50,13 @@ impl Casters {
         match (blocked, unsure) {
             (true, _) => Occlusion::Blocked,
             (false, false) => Occlusion::Clear,
-            (false, true) => self.occlusion_around(segment, own, radius_m),
+            (false, true) => self.occlusion_around(segment, own, &continuation, radius_m),
         }
     }
 
     /// Compares the exact verdicts at the start and around it.
-    fn occlusion_around(&self, segment: &Segment, own: Option<u32>, radius_m: f64) -> Occlusion {
-        let blocked_from = |from: DVec3| self.any_hit(&Segment { from, ..*segment }, own).is_some();
+    fn occlusion_around(&self, segment: &Segment, own: Option<u32>, continuation: &[u32], radius_m: f64) -> Occlusion {
+        let blocked_from = |from: DVec3| self.blocked_by_others(&Segment { from, ..*segment }, own, continuation);
         let blocked = blocked_from(segment.from);
         let certain = DVec3::AXES.iter().all(|&axis| {
             let step = axis * (3.0f64.sqrt() * radius_m);
@@ -64,5 +67,25 @@ impl Casters {
             (true, true) => Occlusion::Blocked,
             (true, false) => Occlusion::Clear,
         }
+    }
+
+    /// Whether anything but the own triangle and its continuation blocks `segment`.
+    fn blocked_by_others(&self, segment: &Segment, own: Option<u32>, continuation: &[u32]) -> bool {
+        let mut blocked = false;
+        self.each_hit(segment, own, |triangle, _| {
+            blocked = !continuation.contains(&triangle.id);
+            if blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        blocked
+    }
+
+    /// Whether a triangle shares a corner with the own one and lies in its plane, exactly.
+    fn continues(&self, own: Option<u32>, triangle: &PackedTriangle) -> bool {
+        own.is_some_and(|own| {
+            let [a, b, c] = self.corners_of[own as usize].map(|corner| corner.as_dvec3());
+            let corners = triangle.corners();
+            corners.iter().any(|corner| [a, b, c].contains(corner))
+                && corners.iter().all(|&corner| exact::side(a, b, c, corner) == 0.0)
+        })
     }
 }

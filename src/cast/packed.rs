@@ -15,7 +15,10 @@ pub(super) enum Crossing {
     /// Certainly crossed.
     Crossed,
     /// Some sign is in doubt.
-    Unsure,
+    Unsure {
+        /// But not those of the edges: the line certainly passes inside.
+        inside: bool,
+    },
 }
 
 /// A triangle in the order in which the tree's leaves list them.
@@ -63,7 +66,7 @@ impl PackedTriangle {
         match start * end {
             1 => Crossing::Missed,
             -1 if inside => Crossing::Crossed,
-            _ => Crossing::Unsure,
+            _ => Crossing::Unsure { inside },
         }
     }
 }

@@ -54,26 +54,6 @@ impl Shape {
         Self { positions, triangles }
     }
 
-    /// A torus around the y axis with a tube of radius 0.4 around a circle of radius 1.
-    pub(crate) fn torus(around: u32, tube: u32) -> Self {
-        let turn = |i: u32, n: u32| (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
-        Self::grid(around, tube, true, |i, j| {
-            let ((sin_a, cos_a), (sin_t, cos_t)) = (turn(i, around), turn(j, tube));
-            let radius = 1.0 + 0.4 * cos_t;
-            DVec3::new(radius * cos_a, 0.4 * sin_t, radius * sin_a).as_vec3()
-        })
-    }
-
-    /// A closed mesh of long thin triangles: two poles, and a ring so narrow that its triangles are a thousand times
-    /// as long as wide.
-    pub(crate) fn slivers(count: u32) -> Self {
-        let turn = |i: u32| (std::f64::consts::TAU * f64::from(i) / f64::from(count)).sin_cos();
-        let ring = (0..count).map(|i| (DVec3::new(turn(i).1, 0.0, turn(i).0) * 0.05).as_vec3());
-        let positions = ring.chain([Vec3::Y * 2.0, Vec3::Y * -2.0]).collect();
-        let cone = |pole: u32| (0..count).map(move |i| [i, (i + 1) % count, pole]);
-        Self { positions, triangles: cone(count).chain(cone(count + 1)).collect() }
-    }
-
     /// An icosphere whose corners are drawn in or out at random: closed, spiky, and all of it seen from the origin.
     pub(crate) fn star(levels: u32, random: &mut Random) -> Self {
         let mut shape = Self::icosphere(levels);
@@ -83,22 +63,15 @@ impl Shape {
         shape
     }
 
-    /// A grid of `columns` × `rows` cells, either open or closed around both ways.
-    pub(crate) fn grid(columns: u32, rows: u32, closed: bool, at: impl Fn(u32, u32) -> Vec3) -> Self {
-        let (width, height) = if closed { (columns, rows) } else { (columns + 1, rows + 1) };
-        let positions = (0..height).flat_map(|j| (0..width).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
-        let index = |i: u32, j: u32| (j % height) * width + i % width;
+    /// A grid of `columns` × `rows` cells, two triangles each, with its corner (i, j) where `at` says.
+    pub(crate) fn grid(columns: u32, rows: u32, at: impl Fn(u32, u32) -> Vec3) -> Self {
+        let positions = (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
         let cell = |i: u32, j: u32| {
-            let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
+            let a = j * (columns + 1) + i;
+            let (b, c, d) = (a + 1, a + columns + 2, a + columns + 1);
             [[a, d, b], [b, d, c]]
         };
         Self { positions, triangles: (0..rows).flat_map(|j| (0..columns).flat_map(move |i| cell(i, j))).collect() }
-    }
-
-    /// Scaled, then moved, in f64, rounded once.
-    pub(crate) fn placed(&self, scale: f64, offset: DVec3) -> Self {
-        let place = |p: &Vec3| (scale * p.as_dvec3() + offset).as_vec3();
-        Self { positions: self.positions.iter().map(place).collect(), triangles: self.triangles.clone() }
     }
 }
 
@@ -176,10 +149,6 @@ impl Random {
     /// In 0..1.
     pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 * 0.5f64.powi(53)
-    }
-    /// Less than `count`.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
     }
     /// In the cube from −1 to 1.
     pub(crate) fn in_cube(&mut self) -> DVec3 {

@@ -167,7 +167,7 @@ mod occlusion {
 
     /// A floor of two triangles from −1 to 1, ids 0 and 1, and whatever else is given.
     fn on_floor(others: &[[Vec3; 3]]) -> Casters {
-        let floor = Shape::grid(1, 1, false, |i, j| Vec3::new(2.0 * i as f32 - 1.0, 0.0, 2.0 * j as f32 - 1.0));
+        let floor = Shape::grid(1, 1, |i, j| Vec3::new(2.0 * i as f32 - 1.0, 0.0, 2.0 * j as f32 - 1.0));
         Casters::new(&scene_of(&[floor, Shape::soup(others)], Vec3::Y))
     }
 
@@ -184,6 +184,21 @@ mod occlusion {
             let own = u32::from(at.x + at.z > 0.0);
             assert_eq!(casters.occlusion(&from_floor(at.x, at.z), Some(own), RADIUS_M), Occlusion::Clear, "{at}");
         }
+    }
+
+    #[test]
+    fn a_receiver_on_the_seam_of_a_flat_floor_is_lit() {
+        let casters = on_floor(&[]);
+        for i in -999..=999 {
+            let x = f64::from(i) / 1000.0;
+            for own in [0, 1] {
+                assert_eq!(casters.occlusion(&from_floor(x, -x), Some(own), RADIUS_M), Occlusion::Clear, "{x}");
+            }
+        }
+        // The same seam in another surface, which shares corners with the floor, is not the floor's.
+        let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+        let other = on_floor(&[[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)]]);
+        assert_eq!(other.occlusion(&from_floor(0.5, -0.5), Some(0), RADIUS_M), Occlusion::Doubtful);
     }
 
     #[test]

@@ -1,1 +1,18 @@
-//! (to come)
+//! The truth: what fraction of a light every asked pixel really sees, worked out by exact ray casting.
+//!
+//! [`exact`] asks the ray core; [`cross_check`] has the brute-force twin decide some of the pixels again.
+
+mod cross_check;
+mod exact;
+#[cfg(test)]
+mod tests;
+
+pub use cross_check::{Disagreement, cross_check};
+pub use exact::{ExactTruth, exact};
+
+use crate::receiver::{PixelClass, Receiver, Receivers};
+
+/// The receiver of pixel `index`, if the question is put to it.
+fn asked(receivers: &Receivers, classes: &[PixelClass], index: usize) -> Option<Receiver> {
+    receivers.pixels[index].filter(|_| classes[index] == PixelClass::Asked)
+}
