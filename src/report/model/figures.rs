@@ -1,0 +1,150 @@
+//! The figures of a run that no other module owns: causes, truth, budget and jitter.
+
+use crate::verdict::{CauseShare, Verdict};
+use serde::Serialize;
+
+/// What one cause is answerable for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CauseEntry {
+    /// Wrong pixels named after it.
+    pub pixels: u64,
+    /// Sum of its signed contributions, in units of one pixel's full visibility; negative is too dark.
+    pub sum: f64,
+}
+
+impl From<&CauseShare> for CauseEntry {
+    fn from(share: &CauseShare) -> Self {
+        Self { pixels: share.pixels, sum: share.sum }
+    }
+}
+
+/// Where the truth came from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TruthSource {
+    /// The oracle's name.
+    pub oracle: String,
+    /// Shadow rays it cast.
+    pub rays: u64,
+    /// How long that took, milliseconds.
+    pub ms: f64,
+    /// Pixels on which other oracles disagree with it.
+    pub disagreements: Disagreements,
+}
+
+/// Pixels on which other oracles disagree; `None` for one that was not asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Disagreements {
+    /// Mitsuba 3.
+    pub mitsuba: Option<u64>,
+    /// Our own brute force.
+    pub brute: Option<u64>,
+}
+
+/// A limit on a run's error, and whether it was met.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BudgetOutcome {
+    /// Largest allowed share of wrong pixels among the asked, 0..=1.
+    pub wrong_fraction: Option<f64>,
+    /// Largest allowed mean absolute error, 0..=1.
+    pub mean_abs: Option<f64>,
+    /// Whether the verdict stays within both.
+    pub met: bool,
+    /// Whether it would with every undecided pixel as wrong as can be.
+    pub met_worst_case: bool,
+}
+
+impl BudgetOutcome {
+    /// Holds the limits against a verdict. A run in which nothing was asked meets every budget.
+    #[must_use]
+    pub fn of(verdict: &Verdict, wrong_fraction: Option<f64>, mean_abs: Option<f64>) -> Self {
+        let within = |figure: Option<f64>, limit: Option<f64>| match (figure, limit) {
+            (Some(figure), Some(limit)) => figure <= limit,
+            _ => true,
+        };
+        let (error, worst) = (&verdict.error, &verdict.worst_case);
+        Self {
+            wrong_fraction,
+            mean_abs,
+            met: within(error.wrong_fraction, wrong_fraction) && within(error.mean_abs, mean_abs),
+            met_worst_case: within(worst.wrong_fraction, wrong_fraction) && within(worst.mean_abs, mean_abs),
+        }
+    }
+}
+
+/// The spread of a run's error over sub-texel shifts of its map: one view alone is one sample of the texel phase.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Jitter {
+    /// How many shifts were rendered.
+    pub phases: u32,
+    /// Of the share of wrong pixels.
+    pub wrong_fraction: Spread,
+}
+
+/// Mean and spread of some samples.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Smallest sample.
+    pub min: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// Standard deviation of the samples themselves (divided by n).
+    pub stddev: f64,
+}
+
+impl Jitter {
+    /// The spread of the share of wrong pixels, one sample per phase; `None` without samples.
+    #[must_use]
+    pub fn of(wrong_fractions: &[f64]) -> Option<Self> {
+        let n = wrong_fractions.len() as f64;
+        let mean = wrong_fractions.iter().sum::<f64>() / n;
+        let variance = wrong_fractions.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+        let spread = Spread {
+            mean,
+            min: wrong_fractions.iter().copied().reduce(f64::min)?,
+            max: wrong_fractions.iter().copied().reduce(f64::max)?,
+            stddev: variance.sqrt(),
+        };
+        Some(Self { phases: wrong_fractions.len() as u32, wrong_fraction: spread })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::model::tests::verdict_with;
+
+    #[test]
+    fn budgets_are_met_up_to_their_limit() {
+        // 1 of 8 decided pixels is wrong by 1, 2 more are undecided.
+        let verdict = verdict_with(1, 7, 2);
+        let outcome = |wrong, mean| {
+            let outcome = BudgetOutcome::of(&verdict, wrong, mean);
+            (outcome.met, outcome.met_worst_case)
+        };
+        assert_eq!(outcome(Some(0.125), None), (true, false));
+        assert_eq!(outcome(Some(0.124), None), (false, false));
+        assert_eq!(outcome(Some(0.3), None), (true, true));
+        assert_eq!(outcome(Some(0.3), Some(0.1)), (false, false));
+        assert_eq!(outcome(None, Some(0.125)), (true, false));
+        assert_eq!(outcome(None, None), (true, true));
+    }
+
+    #[test]
+    fn nothing_asked_meets_a_budget_unless_all_of_it_is_undecided() {
+        let nothing = BudgetOutcome::of(&verdict_with(0, 0, 0), Some(0.0), None);
+        assert!(nothing.met && nothing.met_worst_case);
+        let undecided = BudgetOutcome::of(&verdict_with(0, 0, 3), Some(0.0), None);
+        assert!(undecided.met && !undecided.met_worst_case);
+    }
+
+    #[test]
+    fn the_spread_of_a_jittered_run() {
+        let jitter = Jitter::of(&[0.25, 0.5, 0.75]).unwrap();
+        assert_eq!((jitter.phases, jitter.wrong_fraction.mean), (3, 0.5));
+        assert_eq!((jitter.wrong_fraction.min, jitter.wrong_fraction.max), (0.25, 0.75));
+        assert!((jitter.wrong_fraction.stddev - (1.0_f64 / 24.0).sqrt()).abs() < f64::EPSILON);
+        assert_eq!(Jitter::of(&[]), None);
+    }
+}
