@@ -98,12 +98,24 @@ impl Cause {
     #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
-            Self::EdgeAliasing => "the texel read holds another surface than the one at this point: the shadow's edge is a staircase of texels",
-            Self::PerspectiveAliasing => "the texel read is larger than the pixel because the map spends too few texels near the camera: a coarse staircase",
-            Self::ProjectiveAliasing => "the texel read is stretched over this surface because it is tilted away from the light: a long staircase",
-            Self::Acne => "the texel read holds the receiver's own surface at another depth: the surface shadows itself because the bias is too small",
-            Self::Curvature => "the texel read holds a neighbouring facet that no bias for this facet clears: the surface curves within one texel",
-            Self::PeterPanning => "the bias is larger than the distance to the blocker: the shadow is lost where blocker and receiver meet",
+            Self::EdgeAliasing => {
+                "the texel read holds another surface than the one at this point: the shadow's edge is a staircase of texels"
+            }
+            Self::PerspectiveAliasing => {
+                "the texel read is larger than the pixel because the map spends too few texels near the camera: a coarse staircase"
+            }
+            Self::ProjectiveAliasing => {
+                "the texel read is stretched over this surface because it is tilted away from the light: a long staircase"
+            }
+            Self::Acne => {
+                "the texel read holds the receiver's own surface at another depth: the surface shadows itself because the bias is too small"
+            }
+            Self::Curvature => {
+                "the texel read holds a neighbouring facet that no bias for this facet clears: the surface curves within one texel"
+            }
+            Self::PeterPanning => {
+                "the bias is larger than the distance to the blocker: the shadow is lost where blocker and receiver meet"
+            }
             Self::ClippingNear => "the blocker or the receiver lies before the near plane",
             Self::ClippingFar => "the receiver lies behind the far plane",
             Self::ClippingFrustum => "the receiver lies outside the light's frustum, where everything is lit",
@@ -112,9 +124,15 @@ impl Cause {
             Self::PlanarModel => "the receiver is not on the plane that the shadow is projected on",
             Self::AntiShadow => "the blocker lies beyond the light as seen from the plane",
             Self::FalseShadowBehindPlane => "the blocker lies behind the plane",
-            Self::FilterWidth => "the filter mixes in texels from across the shadow's edge: its penumbra is not the light's",
-            Self::LightBleeding => "the moments of two blockers at different depths cannot tell full shadow: light bleeds in",
-            Self::Precision => "the exact technique would be right here; rounding, stored precision or rasteriser snapping flipped it",
+            Self::FilterWidth => {
+                "the filter mixes in texels from across the shadow's edge: its penumbra is not the light's"
+            }
+            Self::LightBleeding => {
+                "the moments of two blockers at different depths cannot tell full shadow: light bleeds in"
+            }
+            Self::Precision => {
+                "the exact technique would be right here; rounding, stored precision or rasteriser snapping flipped it"
+            }
             Self::TechniqueModel => "the technique's model leaves this effect out",
         }
     }

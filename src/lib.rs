@@ -23,16 +23,16 @@
 
 pub mod cast;
 pub mod cause;
+pub mod cli;
+pub mod evaluate;
 pub mod gpu;
 pub mod inspect;
 pub mod mask;
 pub mod receiver;
-pub mod evaluate;
 pub mod report;
-pub mod cli;
-pub mod watch;
 pub mod scene;
 pub mod shade;
 pub mod technique;
 pub mod truth;
 pub mod verdict;
+pub mod watch;

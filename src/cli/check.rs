@@ -13,7 +13,6 @@ use crate::report::model::{BudgetOutcome, Jitter, Report, Run};
 use crate::report::table::table;
 use crate::scene::{Light, Scene};
 use crate::technique::{Spec, TechniqueError, nearest};
-use crate::watch::Watch;
 use anyhow::{Context, bail};
 use std::path::Path;
 
@@ -138,8 +137,8 @@ fn tasks<'s>(scene: &'s Scene, typed: &[Spec], args: &CheckArgs) -> anyhow::Resu
         .budgets
         .iter()
         .map(|budget| {
-            let spec = Spec::parse(&budget.technique)
-                .with_context(|| format!("a [[budget]] of scene '{}'", scene.name))?;
+            let spec =
+                Spec::parse(&budget.technique).with_context(|| format!("a [[budget]] of scene '{}'", scene.name))?;
             Ok((spec, budget))
         })
         .collect::<anyhow::Result<Vec<_>>>()?;

@@ -6,9 +6,7 @@ use super::exit;
 use super::report::{command, quoted};
 use super::terminal::{Terminal, say};
 use crate::cause::Cause;
-use crate::evaluate::{
-    BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias,
-};
+use crate::evaluate::{BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias};
 use crate::scene::Light;
 use crate::technique::{Spec, TechniqueError};
 
@@ -49,8 +47,11 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
             terminal.finish();
             found.iter().for_each(|verdict| say(&bias_verdict(verdict)));
         }
-        let best = diagnoses.iter().flat_map(|d| &d.trials).filter_map(|(spec, outcome)| Some((spec, outcome.as_ref().ok()?)));
-        if let Some((fix, outcome)) = best.min_by_key(|(_, outcome)| outcome.wrong).filter(|(_, o)| o.wrong < before.wrong) {
+        let best =
+            diagnoses.iter().flat_map(|d| &d.trials).filter_map(|(spec, outcome)| Some((spec, outcome.as_ref().ok()?)));
+        if let Some((fix, outcome)) =
+            best.min_by_key(|(_, outcome)| outcome.wrong).filter(|(_, o)| o.wrong < before.wrong)
+        {
             say(&format!(
                 "best fix tried: {} leaves {} wrong pixels\nnext step: {}\n",
                 fix.short(),
@@ -126,11 +127,13 @@ fn bias_verdict(verdict: &BiasVerdict) -> String {
     let tried: Vec<String> = verdict
         .tried
         .iter()
-        .map(|(spec, own, detached)| format!("  {}: self-shadowing {own} px, peter-panning {detached} px", spec.short()))
+        .map(|(spec, own, detached)| {
+            format!("  {}: self-shadowing {own} px, peter-panning {detached} px", spec.short())
+        })
         .collect();
-    let conclusion = verdict.free_of_both.as_ref().map_or_else(
-        || "no bias value tried clears both".to_owned(),
-        |spec| format!("{} clears both", spec.short()),
-    );
+    let conclusion = verdict
+        .free_of_both
+        .as_ref()
+        .map_or_else(|| "no bias value tried clears both".to_owned(), |spec| format!("{} clears both", spec.short()));
     format!("biases compared:\n{}\n  {conclusion}\n", tried.join("\n"))
 }

@@ -27,7 +27,14 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let index = args.pixel.y * size.x + args.pixel.x;
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
-    say(&format!("pixel {},{} of {}, light '{}', {}", args.pixel.x, args.pixel.y, scene.name, light.name, spec.short()));
+    say(&format!(
+        "pixel {},{} of {}, light '{}', {}",
+        args.pixel.x,
+        args.pixel.y,
+        scene.name,
+        light.name,
+        spec.short()
+    ));
     let Some(receiver) = view.receivers.pixels[index as usize] else {
         say("  background: no geometry at this pixel's centre");
         return Ok(exit::OK);
@@ -35,8 +42,10 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let classes = view.receivers.classify(&scene, light);
     say(&surface(&scene, &receiver));
     if terminator(&scene, &view.receivers, light)[index as usize] {
-        say("  shading          the facet is turned away from the light while its interpolated normal is still lit: the \
-             smooth-shading terminator, which looks like acne and which no shadow technique causes");
+        say(
+            "  shading          the facet is turned away from the light while its interpolated normal is still lit: the \
+             smooth-shading terminator, which looks like acne and which no shadow technique causes",
+        );
     }
     match classes[index as usize] {
         PixelClass::Asked => {}

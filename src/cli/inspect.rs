@@ -12,7 +12,7 @@ use crate::receiver::PixelClass;
 use crate::scene::{Light, Scene};
 use crate::shade::terminator;
 use crate::technique::{Spec, registry};
-use comfy_table::{ContentArrangement, Table, presets};
+use comfy_table::{ContentArrangement, Table, TableStyle};
 
 pub(super) fn run(args: &InspectArgs) -> anyhow::Result<u8> {
     let typed = args.technique.as_deref().map(Spec::parse).transpose()?;
@@ -41,8 +41,19 @@ fn meshes(reports: &[MeshReport]) -> String {
     /// More meshes than this are summed up in one row.
     const LISTED: usize = 24;
     let mut table = Table::new();
-    table.load_preset(presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_header(["mesh", "triangles", "casts", "closed", "outward", "open edges", "T-junctions", "non-manifold", "degenerate", "duplicate"]);
+    table.load_style(TableStyle::new()).set_content_arrangement(ContentArrangement::Dynamic);
+    table.set_header([
+        "mesh",
+        "triangles",
+        "casts",
+        "closed",
+        "outward",
+        "open edges",
+        "T-junctions",
+        "non-manifold",
+        "degenerate",
+        "duplicate",
+    ]);
     for mesh in reports.iter().take(LISTED) {
         let yes_no = |is: bool| if is { "yes" } else { "no" }.to_owned();
         table.add_row([

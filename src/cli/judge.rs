@@ -23,9 +23,8 @@ pub(super) fn run(args: &JudgeArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
     let question = view.ask(light, terminal)?;
-    let verdict = judge(&question.classes, &question.truth.mask, &mask, WRONG_ABOVE_HARD).with_context(|| {
-        format!("{file}: does not answer for scene '{}', light '{}'", scene.name, light.name)
-    })?;
+    let verdict = judge(&question.classes, &question.truth.mask, &mask, WRONG_ABOVE_HARD)
+        .with_context(|| format!("{file}: does not answer for scene '{}', light '{}'", scene.name, light.name))?;
     let typed = format!("file:{file}");
     let asked = model::Question {
         scene: scene.name.clone(),

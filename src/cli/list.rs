@@ -6,7 +6,7 @@ use super::terminal::{complain, say};
 use crate::scene::{self, LoadOptions};
 use crate::technique::{Technique, registry};
 use anyhow::Context;
-use comfy_table::{ContentArrangement, Table, presets};
+use comfy_table::{ContentArrangement, Table, TableStyle};
 
 pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
     match args.what {
@@ -37,14 +37,15 @@ pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
 
 fn plain_table() -> Table {
     let mut table = Table::new();
-    table.load_preset(presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);
+    table.load_style(TableStyle::new()).set_content_arrangement(ContentArrangement::Dynamic);
     table
 }
 
 fn described(technique: &dyn Technique) -> String {
     let mut table = plain_table();
     for param in technique.params() {
-        let name = if param.unit.is_empty() { param.name.to_owned() } else { format!("{} [{}]", param.name, param.unit) };
+        let name =
+            if param.unit.is_empty() { param.name.to_owned() } else { format!("{} [{}]", param.name, param.unit) };
         table.add_row([name, param.default.to_string(), param.range(), param.help.to_owned()]);
     }
     format!(

@@ -41,7 +41,7 @@ pub fn main() -> ExitCode {
         Command::Truth(args) => masks::truth(&args, &terminal),
         Command::Mask(args) => masks::mask(&args),
         Command::Judge(args) => judge::run(&args, &terminal),
-        Command::Inspect(args) => inspect::run(&args, &terminal),
+        Command::Inspect(args) => inspect::run(&args),
         Command::Explain(args) => explain::run(&args, &terminal),
         Command::Diagnose(args) => diagnose::run(&args, &terminal),
         Command::Scaffold(args) => scaffold::run(&args),

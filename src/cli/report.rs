@@ -38,7 +38,11 @@ pub(super) fn command(scene: &Path, light: &Light, spec: &Spec, size: UVec2, jit
 /// A word as a POSIX shell takes it.
 pub(super) fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
 }
 
 /// The adapter as reports name it.
@@ -59,10 +63,7 @@ pub(super) fn truth_source(question: &Question<'_>) -> model::TruthSource {
         oracle: "exact".to_owned(),
         rays: question.truth.rays,
         ms: question.truth.ms,
-        disagreements: model::Disagreements {
-            mitsuba: None,
-            brute: Some(question.brute_disagreements.len() as u64),
-        },
+        disagreements: model::Disagreements { mitsuba: None, brute: Some(question.brute_disagreements.len() as u64) },
     }
 }
 

@@ -94,7 +94,8 @@ pub fn describe_adapters() -> Vec<AdapterSummary> {
 /// [`GpuError::NoAdapter`] if none answers or none matches.
 pub(super) fn choose(instance: &Instance, wish: Option<&str>) -> Result<Adapter, GpuError> {
     let mut adapters = all_adapters(instance);
-    let names: Vec<String> = adapters.iter().map(|a| a.get_info()).map(|i| format!("{} ({})", i.name, i.backend)).collect();
+    let names: Vec<String> =
+        adapters.iter().map(|a| a.get_info()).map(|i| format!("{} ({})", i.name, i.backend)).collect();
     let position = match wish {
         // The GL backend lacks depth copies and samples stencil as 0: only on explicit request.
         None => adapters.iter().position(|a| a.get_info().backend != Backend::Gl),

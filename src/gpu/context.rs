@@ -1,7 +1,7 @@
 //! One device for everything: opening it, and running work with its errors caught.
 
-use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
 use super::GpuError;
+use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{Device, DeviceDescriptor, Error, ErrorFilter, Features, Limits, MemoryHints, PollType, Queue};
 
@@ -71,8 +71,7 @@ impl Gpu {
         let result = work();
         let waited = self.device.poll(PollType::wait_indefinitely());
         // Scopes pop in the reverse order of their pushes.
-        let errors: Vec<Error> =
-            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let errors: Vec<Error> = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
         let during = during.to_owned();
         if let Some(why) = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone() {
             return Err(GpuError::Lost { during, why });

@@ -1,14 +1,15 @@
 //! What can go wrong on a device, as values.
 
 /// The command that gives a machine without a graphics driver a software one.
-pub const INSTALL_HINT: &str =
-    "apt-get update && apt-get install -y --no-install-recommends mesa-vulkan-drivers   (with sudo if you are not root)";
+pub const INSTALL_HINT: &str = "apt-get update && apt-get install -y --no-install-recommends mesa-vulkan-drivers   (with sudo if you are not root)";
 
 /// A failure of the graphics stack.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter answered, or none matched what the user asked for.
-    #[error("no usable graphics adapter: {why}\n  found: {found}\n  install a software Vulkan driver with: {INSTALL_HINT}")]
+    #[error(
+        "no usable graphics adapter: {why}\n  found: {found}\n  install a software Vulkan driver with: {INSTALL_HINT}"
+    )]
     NoAdapter {
         /// What was looked for.
         why: String,

@@ -14,6 +14,6 @@ pub use adapter::{AdapterSummary, LimitsSummary, describe_adapters};
 pub use context::Gpu;
 pub use error::{GpuError, INSTALL_HINT};
 pub use gbuffer::GBuffer;
-pub use geometry::Geometry;
 pub(crate) use geometry::CORNER_LAYOUT;
+pub use geometry::Geometry;
 pub use recorder::{PassRecord, Recorder, WorkCounts};

@@ -13,7 +13,10 @@ pub struct Wgsl {
 /// Includes a file of the `shaders/` folder.
 macro_rules! wgsl {
     ($path:literal) => {
-        $crate::gpu::shader::Wgsl { path: $path, text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)) }
+        $crate::gpu::shader::Wgsl {
+            path: $path,
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)),
+        }
     };
 }
 pub(crate) use wgsl;

@@ -53,8 +53,7 @@ impl Footprint {
         let tangents = [tangent, input.normal_in_world.cross(tangent)];
         let half_image = 0.5 * input.image_size.as_dvec2() * DVec2::new(1.0, -1.0);
         let pixels = jacobian(input.clip_from_world, input.point_in_world, tangents, half_image);
-        let texels =
-            jacobian(input.map_from_world, input.point_in_world, tangents, input.map_size.as_dvec2());
+        let texels = jacobian(input.map_from_world, input.point_in_world, tangents, input.map_size.as_dvec2());
         let pixels_per_texel = pixels * texels.inverse();
         let (u, v) = (pixels_per_texel.x_axis, pixels_per_texel.y_axis);
         if !(u.is_finite() && v.is_finite()) {
@@ -100,11 +99,9 @@ mod tests {
         let aspect = f64::from(IMAGE.x) / f64::from(IMAGE.y);
         let clip_from_world = rh::proj::directx::perspective_infinite_reverse(1.0, aspect, 0.1) * view;
         let half = 0.5 * WIDTH_M;
-        let uv_from_clip = DMat4::from_cols_array(&[
-            0.5, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.5, 0.0, 1.0,
-        ]);
-        let map_from_world =
-            uv_from_clip * rh::proj::directx::orthographic(-half, half, -half, half, 1.0, 20.0) * view;
+        let uv_from_clip =
+            DMat4::from_cols_array(&[0.5, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.5, 0.0, 1.0]);
+        let map_from_world = uv_from_clip * rh::proj::directx::orthographic(-half, half, -half, half, 1.0, 20.0) * view;
         let pixel_m = 2.0 * 0.5_f64.tan() / f64::from(IMAGE.y) * HEIGHT_M;
         Footprint::new(&FootprintInput {
             clip_from_world: &clip_from_world,

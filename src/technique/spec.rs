@@ -91,9 +91,11 @@ impl Spec {
             }
             seen.push(index);
             let Param { name, .. } = params[index];
-            values[index].1 = params[index]
-                .parse(value)
-                .map_err(|why| SpecError::Value { family: technique.id(), key: name, why })?;
+            values[index].1 = params[index].parse(value).map_err(|why| SpecError::Value {
+                family: technique.id(),
+                key: name,
+                why,
+            })?;
         }
         Ok(Self { typed: trimmed.to_owned(), technique, values })
     }

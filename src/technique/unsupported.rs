@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Unsupported {
     /// The technique cannot handle this kind of light.
-    #[error("not applicable: {kind} lights; it handles {handled}")]
+    #[error("{kind} lights; it handles {handled}")]
     Light {
         /// The light's kind.
         kind: &'static str,
@@ -12,7 +12,9 @@ pub enum Unsupported {
         handled: &'static str,
     },
     /// One frustum cannot hold what it must.
-    #[error("not applicable: the receivers span {asked_deg:.0} degrees as seen from the light, one frustum holds {limit_deg:.0}")]
+    #[error(
+        "the receivers span {asked_deg:.0} degrees as seen from the light, one frustum holds {limit_deg:.0}"
+    )]
     FieldOfView {
         /// Full angle needed.
         asked_deg: f64,
@@ -20,13 +22,13 @@ pub enum Unsupported {
         limit_deg: f64,
     },
     /// The adapter lacks something.
-    #[error("not applicable: this adapter lacks {what}")]
+    #[error("this adapter lacks {what}")]
     MissingFeature {
         /// What is missing, with numbers.
         what: String,
     },
     /// The parameters leave nothing to do.
-    #[error("not applicable: {why}")]
+    #[error("{why}")]
     Degenerate {
         /// In words.
         why: String,

@@ -127,7 +127,13 @@ impl Lookup {
     /// The bias that the receiver's own slope needs for a kernel of that many texel widths (docs/map.md#bias), in units
     /// of depth.
     #[must_use]
-    pub fn closed_form(&self, point_in_world: DVec3, normal_in_world: DVec3, (q, depth): (f64, f64), kernel: f64) -> f64 {
+    pub fn closed_form(
+        &self,
+        point_in_world: DVec3,
+        normal_in_world: DVec3,
+        (q, depth): (f64, f64),
+        kernel: f64,
+    ) -> f64 {
         let metres_per_depth = self.frustum.metres_per_depth(q);
         let texel_m = self.frustum.texel_m(q);
         let slope_per_texel = self.slope_per_texel(point_in_world, normal_in_world);

@@ -23,7 +23,9 @@ const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![("map caster".to_owned(), vec![CASTER]), ("map gather".to_owned(), vec![GATHER])];
     modules.extend(
-        filter::registry().iter().map(|f| (format!("map lookup {}", f.choice().name), vec![RECEIVER, LOOKUP, f.shader()])),
+        filter::registry()
+            .iter()
+            .map(|f| (format!("map lookup {}", f.choice().name), vec![RECEIVER, LOOKUP, f.shader()])),
     );
     modules
 }

@@ -95,9 +95,7 @@ impl Prepared for PreparedMap<'_> {
         biases.sort_by(|a, b| a.0.total_cmp(&b.0));
         let bias = biases.get(biases.len() / 2).zip(biases.last()).map_or_else(
             || "no receiver in the map".to_owned(),
-            |(middle, most)| {
-                format!("median {:.3e} m = {:.2} texels, largest {:.3e} m", middle.0, middle.1, most.0)
-            },
+            |(middle, most)| format!("median {:.3e} m = {:.2} texels, largest {:.3e} m", middle.0, middle.1, most.0),
         );
         let window = match frustum.shape {
             super::projection::Shape::Parallel => format!("{:.4} m x {:.4} m", size.x, size.y),

@@ -206,7 +206,10 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
     let texels = texels_read(map, &[pixel]);
     let stored = map.passes.gather(map.job.gpu, &texels.indices)?;
     let mut facts = vec![
-        fact("position in the map", format!("({:.4}, {:.4}) texels", placed.position_in_texels.x, placed.position_in_texels.y)),
+        fact(
+            "position in the map",
+            format!("({:.4}, {:.4}) texels", placed.position_in_texels.x, placed.position_in_texels.y),
+        ),
         fact("depth, reference", format!("{:.9}, {:.9}", placed.depth, placed.reference)),
         fact("bias", bias_in_words(map, &receiver, &placed)),
     ];

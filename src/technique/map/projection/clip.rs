@@ -14,12 +14,10 @@ pub(super) fn depth_range(
     shape: Shape,
 ) -> Option<(f64, f64)> {
     // A point is inside where every one of these is >= 0; q is the distance for perspective rays and 1 for parallel.
-    let sides: [&dyn Fn(DVec3, f64) -> f64; 4] = [
-        &|p, q| p.x - window.min.x * q,
-        &|p, q| window.max.x * q - p.x,
-        &|p, q| p.y - window.min.y * q,
-        &|p, q| window.max.y * q - p.y,
-    ];
+    let sides: [&dyn Fn(DVec3, f64) -> f64; 4] =
+        [&|p, q| p.x - window.min.x * q, &|p, q| window.max.x * q - p.x, &|p, q| p.y - window.min.y * q, &|p, q| {
+            window.max.y * q - p.y
+        }];
     let q = |p: DVec3| if shape == Shape::Parallel { 1.0 } else { -p.z };
     let mut polygon = Vec::with_capacity(8);
     let mut clipped = Vec::with_capacity(8);
