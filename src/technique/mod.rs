@@ -81,7 +81,7 @@ pub struct Job<'j> {
 }
 
 /// A technique ready to run for one job.
-pub trait Prepared {
+pub trait Prepared: Sync {
     /// Renders once, on the GPU.
     ///
     /// # Errors
