@@ -85,6 +85,14 @@ fn at_edge(target: &Target, random: &mut Random) -> Segment {
     through(target.start(random), a + (b - a) * (pick(random, 1025) as f64 / 1024.0))
 }
 
+/// Beside the edge by a rounding error, on either side.
+fn near_edge(target: &Target, random: &mut Random) -> Segment {
+    let [a, b, _] = target.corners(random);
+    let from = target.inside + target.scale * JITTER * random.in_cube();
+    let point = a.lerp(b, random.unit());
+    Segment { from, to: from + (point - from) * (BEYOND * (1.0 + random.unit())) }
+}
+
 fn along_axis(target: &Target, random: &mut Random) -> Segment {
     let axis = DVec3::AXES[pick(random, 3)] * if random.unit() < 0.5 { 1.0 } else { -1.0 };
     // Every line through a corner meets the triangles around it, so this ray may come from outside.
@@ -104,8 +112,13 @@ fn with_negative_zero(target: &Target, random: &mut Random) -> Segment {
     Segment { from, to }
 }
 
-const AIMS: [(&str, Aim); 4] =
-    [("vertex", at_vertex), ("edge", at_edge), ("axis", along_axis), ("negative zero", with_negative_zero)];
+const AIMS: [(&str, Aim); 5] = [
+    ("vertex", at_vertex),
+    ("edge", at_edge),
+    ("near edge", near_edge),
+    ("axis", along_axis),
+    ("negative zero", with_negative_zero),
+];
 
 /// `count` rays, the same at every run.
 fn rays(target: &Target, aim: Aim, count: usize) -> impl ParallelIterator<Item = Segment> {
