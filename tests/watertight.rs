@@ -38,10 +38,10 @@ struct Closed {
 
 fn closed_meshes() -> [Closed; 4] {
     [
-        Closed { name: "icosphere", shape: Shape::icosphere(2), inside: DVec3::ZERO },
-        Closed { name: "torus", shape: torus(16, 8), inside: DVec3::X },
+        Closed { name: "icosphere", shape: Shape::icosphere(1), inside: DVec3::ZERO },
+        Closed { name: "torus", shape: torus(12, 8), inside: DVec3::X },
         Closed { name: "star", shape: Shape::star(2, &mut Random(3)), inside: DVec3::ZERO },
-        Closed { name: "slivers", shape: slivers(100), inside: DVec3::ZERO },
+        Closed { name: "slivers", shape: slivers(60), inside: DVec3::ZERO },
     ]
 }
 
