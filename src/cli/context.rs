@@ -6,7 +6,8 @@ use crate::evaluate::View;
 use crate::gpu::Gpu;
 use crate::receiver::PixelClass;
 use crate::scene::{self, Light, LoadOptions, Scene};
-use crate::technique::{Prepared, Spec, nearest};
+use crate::suggest::hint;
+use crate::technique::{Prepared, Spec};
 use anyhow::{Context, bail};
 use glam::UVec2;
 use std::path::Path;
@@ -32,7 +33,7 @@ pub(super) fn lights<'s>(scene: &'s Scene, name: Option<&str>) -> anyhow::Result
         Some(light) => Ok(vec![light]),
         None => {
             let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
-            let hint = nearest(name, names.iter().copied());
+            let hint = hint(name, names.iter().copied());
             bail!("scene '{}' has no light '{name}'{hint}; it has {}", scene.name, names.join(", "))
         }
     }

@@ -138,14 +138,3 @@ pub enum TechniqueError {
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
 }
-
-/// " (did you mean 'x'?)" for the known word nearest to what was typed, if one is near enough to be a slip.
-pub(crate) fn nearest<'a>(typed: &str, known: impl Iterator<Item = &'a str>) -> String {
-    /// Jaro–Winkler similarity below which two words are not slips of each other.
-    const SLIP: f64 = 0.7;
-    known
-        .map(|word| (strsim::jaro_winkler(typed, word), word))
-        .filter(|(similarity, _)| *similarity > SLIP)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or_else(String::new, |(_, word)| format!(" (did you mean '{word}'?)"))
-}
