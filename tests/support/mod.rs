@@ -8,6 +8,7 @@ use gnomon::scene;
 use std::f64::consts::TAU;
 use testing::{Random, Shape};
 
+pub(crate) mod files;
 pub(crate) mod outline;
 pub(crate) mod scenes;
 #[path = "../../src/cast/testing.rs"]
