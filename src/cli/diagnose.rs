@@ -33,6 +33,8 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
             }
             other => other?,
         };
+        let predicted = evaluation.prepared.facts();
+        predicted.iter().for_each(|(label, value)| say(&format!("  {label:<18} {value}")));
         let before = Outcome::of(&evaluation);
         let asked = evaluation.verdict.pixels.asked;
         say(&format!("  {} of {asked} asked pixels are wrong\n", before.wrong));
