@@ -9,6 +9,7 @@ mod cost;
 pub mod footprint;
 pub mod map;
 pub mod param;
+pub mod planar;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
@@ -32,7 +33,7 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map]
+    &[&map::Map, &planar::Planar]
 }
 
 /// A shadow technique.
