@@ -9,6 +9,7 @@ use crate::cast::Hit;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
+use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
 use glam::IVec2;
 use rayon::prelude::*;
@@ -181,18 +182,7 @@ fn sampling_cause(
     {
         return cause;
     }
-    match map.footprint(pixel) {
-        Some(footprint) if footprint.m > 1.0 => {
-            if footprint.perspective_factor >= footprint.projective_factor {
-                Cause::PerspectiveAliasing
-            } else {
-                Cause::ProjectiveAliasing
-            }
-        }
-        Some(_) => Cause::EdgeAliasing,
-        // Seen edge-on by the light, a texel's image has no bound: the tilt is to blame.
-        None => Cause::ProjectiveAliasing,
-    }
+    aliasing_cause(map.footprint(pixel).as_ref())
 }
 
 /// Where one pixel's lookup went, for people.
