@@ -108,17 +108,23 @@ fn shadow_rays(scene: &Scene, casters: &Casters) -> Vec<ShadowRay> {
         let hit = casters.nearest_hit(&Segment { from: eye, to }, None)?;
         Some((hit.triangle, eye + hit.t * (to - eye)))
     });
-    receivers.filter_map(|(own, from)| shadow_ray(scene, own, eye, Segment { from, to: light })).collect()
+    let facing = receivers.filter_map(|(own, from)| {
+        let normal = scene.triangle_normal(own).normalize();
+        let normal = if normal.dot(eye - from) < 0.0 { -normal } else { normal };
+        (normal.dot(light - from) > 0.0).then(|| (own, from, from + OFFSET * extent_m * normal))
+    });
+    facing
+        .map(|(own, from, beside)| ShadowRay {
+            own,
+            segment: Segment { from, to: light },
+            single: single_ray(beside, light),
+        })
+        .collect()
 }
 
-/// `None` for a surface turned away from the light.
-fn shadow_ray(scene: &Scene, own: u32, eye: DVec3, segment: Segment) -> Option<ShadowRay> {
-    let normal = scene.triangle_normal(own).normalize();
-    let normal = if normal.dot(eye - segment.from) < 0.0 { -normal } else { normal };
-    let origin = segment.from + OFFSET * scene.extent_m() * normal;
-    let along = segment.to - origin;
-    let single = Ray::new(origin.as_vec3a(), along.normalize().as_vec3a(), 0.0, along.length() as f32);
-    (normal.dot(segment.to - segment.from) > 0.0).then_some(ShadowRay { own, segment, single })
+fn single_ray(from: DVec3, to: DVec3) -> Ray {
+    let along = to - from;
+    Ray::new(from.as_vec3a(), along.normalize().as_vec3a(), 0.0, along.length() as f32)
 }
 
 /// What obvhs makes of the scene, triangles in the order of its leaves.

@@ -1,8 +1,8 @@
 //! The slow twin of [`super::Casters`]: every casting triangle of the scene in turn, straight from the definition, with
 //! neither tree nor fast test. It takes the scene itself, so it also checks what the casters were built from.
 
-use super::scene::{Scene, Segment};
 use super::{Hit, exact, weld};
+use crate::scene::{Scene, Segment};
 
 /// Some triangle that blocks `segment`, `own` and those in its place left out.
 #[must_use]

@@ -1,6 +1,6 @@
 //! The definition of a crossing, decided by the signs of exact determinants, and where along the segment it lies.
 
-use super::scene::Segment;
+use crate::scene::Segment;
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 

@@ -2,13 +2,13 @@
 //! and every replay of a technique, so it knows no epsilon: each verdict is the sign of exact determinants.
 //!
 //! A triangle *blocks* a segment p → q iff p and q lie strictly on opposite sides of its plane and the line through
-//! them passes inside it, edges and vertices included ([`exact`] states it in code). A blocker at exactly p or q is a
-//! miss. Neighbouring triangles see the same signs at the edge they share, so closed meshes do not leak.
+//! them passes inside it, edges and vertices included. A blocker at exactly p or q is a miss. Neighbouring triangles
+//! see the same signs at the edge they share, so closed meshes do not leak.
 //!
-//! Exactness is cheap because it is rarely needed: [`ray`] bounds the rounding error of Woop's f64 test once per
-//! ray, [`packed`] decides all but the doubtful triangles with it, and `robust::orient3d` (Shewchuk, "Adaptive
-//! Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997) decides the rest. [`tree`] finds
-//! the triangles, [`weld`] makes coinciding ones one, and [`brute`] is the slow twin that checks it all.
+//! Exactness is cheap because it is rarely needed. `ray` bounds the rounding error of Woop's f64 test once per ray,
+//! `packed` decides all but the doubtful triangles with it, and for the rest `exact` has Shewchuk's predicates
+//! ("Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997). `tree` finds
+//! the triangles, `weld` makes coinciding ones one, and [`brute`] is the slow twin that checks it all.
 
 pub mod brute;
 mod exact;
@@ -24,7 +24,9 @@ mod weld;
 
 pub use occlusion::Occlusion;
 
-use crate::scene::{self, Bounds, Scene, Segment};
+#[cfg(test)]
+use crate::scene; // where `testing` looks for it, which the integration tests compile too
+use crate::scene::{Bounds, Scene, Segment};
 use glam::Vec3;
 use packed::{Crossing, PackedTriangle};
 use ray::Ray;
@@ -67,13 +69,14 @@ impl Casters {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let surface_of = weld::surface_of_triangles(scene);
-        let corners_of = (0..scene.triangles.len() as u32).map(|t| weld::corners(scene, t)).collect::<Vec<_>>();
+        let corners_of: Vec<_> = (0..scene.triangles.len() as u32).map(|t| weld::corners(scene, t)).collect();
         let unique: Vec<u32> = scene.casting_triangles().filter(|&t| surface_of[t as usize] == t).collect();
-        let (tree, order) = Tree::build(&unique.iter().map(|&t| corners_of[t as usize]).collect::<Vec<_>>());
-        let in_leaves = order.into_iter().map(|i| unique[i as usize]);
+        let unique_corners: Vec<_> = unique.iter().map(|&t| corners_of[t as usize]).collect();
+        let (tree, order) = Tree::build(&unique_corners);
+        let packed = |i: u32| PackedTriangle::new(unique[i as usize], unique_corners[i as usize]);
         Self {
             tree,
-            triangles: in_leaves.map(|t| PackedTriangle::new(t, corners_of[t as usize])).collect(),
+            triangles: order.into_iter().map(packed).collect(),
             surface_of,
             corners_of,
             bounds: scene.bounds_of(|mesh| mesh.casts),
@@ -154,9 +157,9 @@ impl Casters {
     ) {
         let Some(ray) = Ray::new(segment, &self.bounds, 0.0) else { return };
         self.each_candidate(&ray, own, |triangle, limit| match triangle.crossing(&ray) {
-            Crossing::Unsure { .. } if exact::crosses(segment, &triangle.corners()) => on_hit(triangle, limit),
             Crossing::Crossed => on_hit(triangle, limit),
-            Crossing::Missed | Crossing::Unsure { .. } => ControlFlow::Continue(()),
+            Crossing::Unsure { .. } if exact::crosses(segment, &triangle.corners()) => on_hit(triangle, limit),
+            Crossing::Unsure { .. } | Crossing::Missed => ControlFlow::Continue(()),
         });
     }
 
@@ -170,11 +173,8 @@ impl Casters {
     ) {
         let own_surface = own.map_or(NO_TRIANGLE, |own| self.surface_of[own as usize]);
         self.tree.walk(ray, |leaf, limit| {
-            let others = self.triangles[leaf].iter().filter(|triangle| triangle.id != own_surface);
-            for triangle in others {
-                visit(triangle, limit)?;
-            }
-            ControlFlow::Continue(())
+            let mut others = self.triangles[leaf].iter().filter(|triangle| triangle.id != own_surface);
+            others.try_for_each(|triangle| visit(triangle, limit))
         });
     }
 }

@@ -8,7 +8,7 @@ use super::Casters;
 use super::exact;
 use super::packed::{Crossing, PackedTriangle};
 use super::ray::Ray;
-use super::scene::Segment;
+use crate::scene::Segment;
 use glam::DVec3;
 use std::ops::ControlFlow;
 

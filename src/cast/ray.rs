@@ -12,12 +12,13 @@
 //! volume subtracts d_z·Σ edge, right to 3 · 80 + 40 (sums) + 24 · 2 (d_z, product) = 328uM²·|d_z|, and rounds once
 //! more, 24uM²·(M + |d_z|): **360uM²·(M + |d_z|)**.
 //!
-//! When p may move by `radius` in any direction, up to `√3·radius` along an axis (see [`super::occlusion`]), an
-//! edge's volume changes by at most √3·radius·|b − q|·|c − b|, which is d_z times its area, and the start's volume by
-//! √3·radius times the triangle's doubled area; the end's does not change.
+//! When p may move by `radius` in any direction, up to √3·`radius` along an axis (see [`super::occlusion`]), an edge's
+//! volume, which is d_z times its area, changes by at most √3·`radius`·|b − q|·|c − b|, and the start's volume by
+//! √3·`radius` times the triangle's doubled area; the end's does not change. |b − q| is at most √3 times its largest
+//! component, |c − b| at most the diagonal of the box, the doubled area less than its square. 2 stands for each √3.
 
 use super::exact::clamped_inverse;
-use super::scene::{Bounds, Segment};
+use crate::scene::{Bounds, Segment};
 use glam::DVec3;
 
 /// Half an ulp of 1: the relative error of one rounding.
@@ -86,8 +87,7 @@ impl Ray {
             axes,
             shear: [x / depth, y / depth],
             depth,
-            edge_error: EDGE_ERROR * reach * reach
-                + if radius_m > 0.0 { moved * 2.0 * farthest(to, bounds) * diagonal / depth.abs() } else { 0.0 },
+            edge_error: EDGE_ERROR * reach * reach + moved * 2.0 * farthest(to, bounds) * diagonal / depth.abs(),
             start_error: VOLUME_ERROR * reach * reach * reach + moved * diagonal * diagonal,
             end_error: VOLUME_ERROR * reach * reach * (reach + depth.abs()),
             slabs: std::array::from_fn(|axis| Slab::new(from[axis], along[axis], slack)),

@@ -7,7 +7,7 @@
 
 use super::packed::{larger, smaller};
 use super::ray::Ray;
-use super::scene::Bounds;
+use crate::scene::Bounds;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -39,7 +39,7 @@ struct Node {
 pub(super) struct Tree {
     /// Root first.
     nodes: Vec<Node>,
-    /// Most nodes that a walk has to remember.
+    /// Levels of nodes: the most that a walk has to remember.
     height: usize,
 }
 
@@ -106,8 +106,8 @@ impl Tree {
         if self.nodes.is_empty() {
             return;
         }
-        // One entry per level at most. Once found or not found, there is nothing left to tell.
-        let (ControlFlow::Break(()) | ControlFlow::Continue(())) = if self.height <= USUAL_HEIGHT {
+        // A walk leaves at most one node per level for later. Whether it ended early, only the caller's `visit` cares.
+        let _ = if self.height <= USUAL_HEIGHT {
             self.walk_with(&mut [0; USUAL_HEIGHT], ray, visit)
         } else {
             self.walk_with(&mut vec![0; self.height], ray, visit)
@@ -124,20 +124,25 @@ impl Tree {
         let (mut current, mut pending, mut limit) = (0, 0, 1.0);
         loop {
             let node = &self.nodes[current as usize];
-            let entries = node.entries(ray, limit);
-            let nearer = usize::from(entries[1] < entries[0]);
+            let [left, right] = node.entries(ray, limit);
+            let (near, far) = if right.at < left.at { (right, left) } else { (left, right) };
             let mut next = None;
-            for child in [nearer, 1 - nearer] {
-                let (first, count) = (node.first[child], node.count[child]);
-                if entries[child] > limit {
-                    continue;
-                } else if count > 0 {
-                    visit(first as usize..(first + count) as usize, &mut limit)?;
-                } else if next.is_none() {
-                    next = Some(first);
+            if near.at <= limit {
+                if near.count > 0 {
+                    visit(near.triangles(), &mut limit)?;
                 } else {
-                    stack[pending] = first;
-                    pending += 1;
+                    next = Some(near.first);
+                }
+                // The visit may have lowered the limit.
+                if far.at <= limit {
+                    if far.count > 0 {
+                        visit(far.triangles(), &mut limit)?;
+                    } else if next.is_none() {
+                        next = Some(far.first);
+                    } else {
+                        stack[pending] = far.first;
+                        pending += 1;
+                    }
                 }
             }
             current = match next {
@@ -152,6 +157,21 @@ impl Tree {
     }
 }
 
+/// A child that a ray may enter.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    /// Where along the ray, at least 0; infinite if never.
+    at: f64,
+    first: u32,
+    count: u32,
+}
+
+impl Entry {
+    fn triangles(self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
 impl Node {
     fn new(children: [Child; 2]) -> Self {
         let plane = |axis: usize| [children.map(|child| child.min[axis]), children.map(|child| child.max[axis])];
@@ -162,18 +182,20 @@ impl Node {
         }
     }
 
-    /// Where the ray enters the box of each child, at least 0; infinite if that is beyond `limit` or never.
-    #[inline]
-    fn entries(&self, ray: &Ray, limit: f64) -> [f64; 2] {
+    /// Where the ray enters the box of each child; never if that is beyond `limit`. Inlined always: the compiler would
+    /// otherwise return the entries through memory, at half the speed.
+    #[inline(always)]
+    fn entries(&self, ray: &Ray, limit: f64) -> [Entry; 2] {
         let (mut entry, mut exit) = ([0.0; 2], [limit; 2]);
         for (sides, slab) in self.planes.iter().zip(&ray.slabs) {
-            let (near, far) = (sides[slab.entry_side], sides[1 - slab.entry_side]);
+            let (near, far) = (sides[slab.entry_side & 1], sides[1 - (slab.entry_side & 1)]);
             for child in 0..2 {
                 entry[child] = larger(entry[child], (f64::from(near[child]) - slab.entry_origin) * slab.inverse);
                 exit[child] = smaller(exit[child], (f64::from(far[child]) - slab.exit_origin) * slab.inverse);
             }
         }
-        std::array::from_fn(|child| if entry[child] <= exit[child] { entry[child] } else { f64::INFINITY })
+        let at = |child: usize| if entry[child] <= exit[child] { entry[child] } else { f64::INFINITY };
+        std::array::from_fn(|child| Entry { at: at(child), first: self.first[child], count: self.count[child] })
     }
 }
 
@@ -195,7 +217,7 @@ fn leaf(node: &Bvh2Node, triangles: impl Iterator<Item = [Vec3; 3]>, padding: f6
     let (min, max) =
         triangles.flatten().fold((Child::NOTHING.min, Child::NOTHING.max), |(min, max), v| (min.min(v), max.max(v)));
     Child {
-        // The sum is rounded to f32 somewhere; one number further is certainly outside.
+        // Rounding to f32 may pull the padded side back; the next number is certainly outside it.
         min: min.map(|x| ((f64::from(x) - padding) as f32).next_down()),
         max: max.map(|x| ((f64::from(x) + padding) as f32).next_up()),
         first: node.first_index,
@@ -226,7 +248,7 @@ fn largest_coordinate(triangles: &[[Vec3; 3]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cast::scene::Segment;
+    use crate::scene::Segment;
 
     fn strip(count: u16) -> Vec<[Vec3; 3]> {
         (0..count)

@@ -3,7 +3,7 @@
 //! Two such triangles bound nothing between them, so a receiver on one lies on both; and a tree builder that compares
 //! neighbours by the size of their common box cannot tell them apart and takes quadratic time.
 
-use super::scene::Scene;
+use crate::scene::Scene;
 use glam::Vec3;
 use std::collections::HashMap;
 

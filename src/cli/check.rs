@@ -12,7 +12,8 @@ use crate::report::export::{EXPORTERS, Exporter};
 use crate::report::model::{BudgetOutcome, Jitter, Report, Run};
 use crate::report::table::table;
 use crate::scene::{Light, Scene};
-use crate::technique::{Spec, TechniqueError, nearest};
+use crate::suggest::hint;
+use crate::technique::{Spec, TechniqueError};
 use anyhow::{Context, bail};
 use std::path::Path;
 
@@ -183,7 +184,7 @@ fn exporters(names: &[String]) -> anyhow::Result<Vec<&'static Exporter>> {
     for name in names {
         let Some(exporter) = Exporter::named(name) else {
             let known: Vec<&str> = EXPORTERS.iter().map(|exporter| exporter.name).collect();
-            bail!("no report format '{name}'{}; there are {}", nearest(name, known.iter().copied()), known.join(", "));
+            bail!("no report format '{name}'{}; there are {}", hint(name, known.iter().copied()), known.join(", "));
         };
         if chosen.iter().all(|chosen| chosen.name != exporter.name) {
             chosen.push(exporter);

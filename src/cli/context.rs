@@ -4,7 +4,7 @@ use super::args::SceneArgs;
 use super::terminal::complain;
 use crate::gpu::Gpu;
 use crate::scene::{self, Light, LoadOptions, Scene};
-use crate::technique::nearest;
+use crate::suggest::hint;
 use anyhow::{Context, bail};
 use glam::UVec2;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub(super) fn lights<'s>(scene: &'s Scene, name: Option<&str>) -> anyhow::Result
         Some(light) => Ok(vec![light]),
         None => {
             let names: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
-            let hint = nearest(name, names.iter().copied());
+            let hint = hint(name, names.iter().copied());
             bail!("scene '{}' has no light '{name}'{hint}; it has {}", scene.name, names.join(", "))
         }
     }

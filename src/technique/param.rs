@@ -139,8 +139,8 @@ impl Choice {
 fn parse_choice(typed: &str, choices: &[Choice]) -> Result<Value, String> {
     let legal = || {
         let spellings: Vec<String> = choices.iter().map(Choice::spelling).collect();
-        let nearest = crate::technique::nearest(typed, choices.iter().map(|c| c.name));
-        format!("takes {}, not '{typed}'{nearest}", spellings.join(", "))
+        let hint = crate::suggest::hint(typed, choices.iter().map(|c| c.name));
+        format!("takes {}, not '{typed}'{hint}", spellings.join(", "))
     };
     if let Some(choice) = choices.iter().find(|choice| choice.name == typed) {
         return Ok(Value::Choice(choice.name, choice.number.map(|number| number.default)));

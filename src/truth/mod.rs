@@ -1,6 +1,6 @@
 //! The truth: what fraction of a light every asked pixel really sees, worked out by exact ray casting.
 //!
-//! [`exact`] asks the ray core; [`cross_check`] has the brute-force twin decide some of the pixels again.
+//! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again.
 
 mod cross_check;
 mod exact;

@@ -243,8 +243,10 @@ fn ratio(sum: f64, count: u64) -> Option<f64> {
 
 /// Fills in where the wrong pixels are: blobs and distances to the edge.
 fn locate_wrong(verdict: &mut Verdict, truth: &TruthMask) {
-    let wrong: Vec<bool> = (0..verdict.signed_error.len()).map(|pixel| verdict.is_wrong(pixel)).collect();
-    let sides: Vec<Side> = verdict.signed_error.iter().zip(&truth.pixels).map(|(e, t)| compared_side(*e, *t)).collect();
+    let wrong: Vec<bool> =
+        (0..verdict.signed_error.len()).into_par_iter().map(|pixel| verdict.is_wrong(pixel)).collect();
+    let compared = verdict.signed_error.par_iter().zip(&truth.pixels);
+    let sides: Vec<Side> = compared.map(|(error, truth)| compared_side(*error, *truth)).collect();
     let (blobs, distance) = rayon::join(|| blobs(verdict.size, &wrong), || edge_distance(verdict.size, &sides, &wrong));
     verdict.error.largest_blob_px = blobs.iter().map(|blob| blob.pixels).max().unwrap_or(0);
     verdict.error.edge_distance_px = distance;

@@ -99,7 +99,8 @@ pub enum LedgerError {
     },
 }
 
-/// Books the errors of `verdict` (on `mask`, by `truth`) to the stages of `replay`.
+/// Books the errors of `verdict` (on `mask`, by `truth`) to the stages of `replay`. The chain of a pixel starts at the
+/// visibility that the truth mask holds and ends at the one that the mask holds, f32 rounding included.
 ///
 /// # Errors
 /// A malformed replay, one that leaves out a pixel with an error or holds one without a verdict, and one whose chain for

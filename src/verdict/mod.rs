@@ -1,6 +1,6 @@
 //! Verdicts: how far a technique's mask is from the truth, where, and by which cause.
 //!
-//! [`judge`] compares a mask with the truth pixel by pixel; [`ledger`](ledger()) books every error to the stages of the
+//! [`judge()`] compares a mask with the truth pixel by pixel; [`ledger`](ledger()) books every error to the stages of the
 //! technique's replay. Both are pure functions of what they are given: same input, same bytes out, whatever the number
 //! of threads.
 

@@ -48,7 +48,7 @@ fn columns() -> Vec<Column> {
 /// Adds a column of a head and what stands in it.
 type Add<'a> = dyn FnMut(&str, fn(&Run) -> Option<String>) + 'a;
 
-fn text(value: impl ToString) -> Option<String> {
+fn text(value: impl ToString + Copy) -> Option<String> {
     Some(value.to_string())
 }
 

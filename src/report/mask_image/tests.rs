@@ -150,6 +150,18 @@ fn another_size_and_damaged_files_are_refused() {
 }
 
 #[test]
+fn a_flipped_bit_never_panics() {
+    let image = MaskImage { size: UVec2::new(2, 1), pixels: vec![answered(0.5), MaskPixel::Undecided] };
+    for file in [image.to_png().unwrap(), image.to_exr().unwrap()] {
+        for bit in 0..8 * file.len() {
+            let mut damaged = file.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            let _ = MaskImage::decode(&damaged, image.size);
+        }
+    }
+}
+
+#[test]
 fn masks_that_contradict_themselves_are_not_written() {
     let short = MaskImage { size: UVec2::new(2, 2), pixels: vec![MaskPixel::Blank; 3] };
     let empty = MaskImage { size: UVec2::ZERO, pixels: Vec::new() };

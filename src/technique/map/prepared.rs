@@ -35,13 +35,24 @@ impl<'j> PreparedMap<'j> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
     }
 
-    /// Total bias at a placed receiver in metres along the light, and in texels.
-    fn effective_bias(&self, receiver: &Receiver, placed: &Placed) -> (f64, f64) {
-        let frustum = &self.lookup.frustum;
-        let at_receiver = (placed.depth - placed.reference).abs();
-        let by_rasteriser = self.lookup.hardware_bias(self.job.scene.triangle_in_world(receiver.triangle)).abs();
-        let metres = (at_receiver + by_rasteriser) * frustum.metres_per_depth(placed.q);
-        (metres, metres / frustum.texel_m(placed.q).max_element())
+    /// What the bias does at a placed receiver, and what it should do.
+    pub(super) fn bias_at(&self, receiver: &Receiver, placed: &Placed) -> BiasAt {
+        let lookup = &self.lookup;
+        let metres_per_depth = lookup.frustum.metres_per_depth(placed.q);
+        let by_rasteriser = lookup.hardware_bias(self.job.scene.triangle_in_world(receiver.triangle)).abs();
+        let effective_m = ((placed.depth - placed.reference).abs() + by_rasteriser) * metres_per_depth;
+        let kernel = self.settings.filter.bias_kernel(self.settings.kernel);
+        let at = (placed.q, placed.depth);
+        let acne_free = lookup.closed_form(placed.point_in_world, receiver.normal_in_world, at, kernel);
+        let light = self.job.light.homogeneous();
+        let to_light = (light.truncate() - receiver.point_in_world * light.w).normalize_or_zero();
+        let sine_of_elevation = receiver.normal_in_world.dot(to_light);
+        BiasAt {
+            effective_m,
+            acne_free_m: acne_free * metres_per_depth,
+            contact_gap_m: effective_m * (1.0 - sine_of_elevation * sine_of_elevation).max(0.0).sqrt(),
+            texel_m: lookup.frustum.texel_m(placed.q).max_element(),
+        }
     }
 }
 
@@ -60,17 +71,12 @@ impl Prepared for PreparedMap<'_> {
         let size = frustum.window.max - frustum.window.min;
         let asked = self.job.classes.iter().zip(&self.job.receivers.pixels);
         let receivers = asked.filter(|(class, _)| **class == PixelClass::Asked).filter_map(|(_, pixel)| *pixel);
-        let mut biases: Vec<(f64, f64)> = receivers
+        let biases: Vec<BiasAt> = receivers
             .filter_map(|receiver| {
                 let placed = self.lookup.place(receiver.point_in_world, receiver.normal_in_world).ok()?;
-                Some(self.effective_bias(&receiver, &placed))
+                Some(self.bias_at(&receiver, &placed))
             })
             .collect();
-        biases.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let bias = biases.get(biases.len() / 2).zip(biases.last()).map_or_else(
-            || "no receiver in the map".to_owned(),
-            |(middle, most)| format!("median {:.3e} m = {:.2} texels, largest {:.3e} m", middle.0, middle.1, most.0),
-        );
         let window = match frustum.shape {
             super::projection::Shape::Parallel => format!("{:.4} m x {:.4} m", size.x, size.y),
             super::projection::Shape::Perspective => {
@@ -81,7 +87,9 @@ impl Prepared for PreparedMap<'_> {
         vec![
             ("light window".to_owned(), window),
             ("light near, far".to_owned(), format!("{:.6} m, {:.6} m", frustum.near_m, frustum.far_m)),
-            ("effective bias".to_owned(), bias),
+            ("effective bias".to_owned(), spread(&biases, |bias| bias.effective_m)),
+            ("acne-free bias".to_owned(), spread(&biases, |bias| bias.acne_free_m)),
+            ("contact gap".to_owned(), spread(&biases, |bias| bias.contact_gap_m)),
         ]
     }
 
@@ -98,8 +106,40 @@ impl Prepared for PreparedMap<'_> {
     }
 }
 
-/// What `replay` needs of the bias at one receiver, in words.
-pub(super) fn bias_in_words(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed) -> String {
-    let (metres, texels) = map.effective_bias(receiver, placed);
-    format!("{metres:.3e} m = {texels:.2} texels")
+/// The bias at one receiver, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BiasAt {
+    /// What is applied, at the receiver and by the rasteriser together, along the light.
+    effective_m: f64,
+    /// What the receiver's own slope and the filter need.
+    acne_free_m: f64,
+    /// How far a thin blocker's shadow starts from where it stands, for the bias applied.
+    contact_gap_m: f64,
+    /// Width of a texel there.
+    texel_m: f64,
+}
+
+impl BiasAt {
+    /// Label and value of each figure, for one pixel.
+    pub(super) fn facts(&self) -> [(String, String); 3] {
+        [("bias", self.effective_m), ("acne-free bias", self.acne_free_m), ("contact gap", self.contact_gap_m)]
+            .map(|(label, metres)| (label.to_owned(), in_metres_and_texels(metres, self.texel_m)))
+    }
+}
+
+fn in_metres_and_texels(metres: f64, texel_m: f64) -> String {
+    format!("{metres:.3e} m = {:.2} texels", metres / texel_m)
+}
+
+/// Median and largest of one figure.
+fn spread(biases: &[BiasAt], figure: fn(&BiasAt) -> f64) -> String {
+    let mut sorted: Vec<&BiasAt> = biases.iter().collect();
+    sorted.sort_by(|a, b| figure(a).total_cmp(&figure(b)));
+    sorted.get(sorted.len() / 2).zip(sorted.last()).map_or_else(
+        || "no receiver in the map".to_owned(),
+        |(middle, most)| {
+            let [middle, most] = [middle, most].map(|bias| in_metres_and_texels(figure(bias), bias.texel_m));
+            format!("median {middle}, largest {most}")
+        },
+    )
 }

@@ -4,7 +4,7 @@
 
 use super::exact_texels::{ExactTexel, ExactTexels};
 use super::lookup::{Outside, Placed};
-use super::prepared::{PreparedMap, bias_in_words};
+use super::prepared::PreparedMap;
 use crate::cast::Hit;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
@@ -201,8 +201,8 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
             format!("({:.4}, {:.4}) texels", placed.position_in_texels.x, placed.position_in_texels.y),
         ),
         fact("depth, reference", format!("{:.9}, {:.9}", placed.depth, placed.reference)),
-        fact("bias", bias_in_words(map, &receiver, &placed)),
     ];
+    facts.extend(map.bias_at(&receiver, &placed).facts());
     /// More taps than this are not listed one by one.
     const LISTED_TAPS: usize = 25;
     let width = map.lookup.frustum.texels.x;
