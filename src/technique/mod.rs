@@ -9,6 +9,8 @@ mod cost;
 pub mod footprint;
 pub mod map;
 pub mod param;
+pub mod planar;
+pub mod projective_texture;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
@@ -32,7 +34,7 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map]
+    &[&map::Map, &planar::Planar, &projective_texture::ProjectiveTexture]
 }
 
 /// A shadow technique.
