@@ -3,13 +3,16 @@ SHELL := /bin/bash
 CARGO ?= cargo
 GNOMON = $(or $(CARGO_TARGET_DIR),target)/release/gnomon
 DEMO = out/demo
+# Vulkan loaders complain on standard error without one.
+export XDG_RUNTIME_DIR ?= $(CURDIR)/out/xdg
 
-.PHONY: help setup demo test bench docs clean
+.PHONY: help setup demo test bench docs pictures clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-6s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
 
 setup: ## a Vulkan driver and the two large meshes, where missing
+	@mkdir -p -m 700 '$(XDG_RUNTIME_DIR)'
 	setup/vulkan.sh
 	setup/meshes.sh
 
@@ -47,6 +50,10 @@ bench: setup ## measure speed and memory, as ratios within one run
 docs: ## the library's documentation
 	$(CARGO) doc --no-deps --locked
 	@echo '==> $(or $(CARGO_TARGET_DIR),target)/doc/gnomon/index.html'
+
+pictures: setup ## the pictures of README and docs, drawn again
+	$(CARGO) build --release --locked
+	docs/pictures.sh $(GNOMON)
 
 clean: ## remove what was built and reported; the large meshes stay
 	$(CARGO) clean

@@ -32,6 +32,7 @@ pub mod receiver;
 pub mod report;
 pub mod scene;
 pub mod shade;
+mod suggest;
 pub mod technique;
 pub mod truth;
 pub mod verdict;

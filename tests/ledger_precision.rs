@@ -4,10 +4,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
-#[path = "support/evaluated.rs"]
-mod evaluated;
+mod support;
 
-use evaluated::{Shot, named, parsed, shipped, shipped_scenes};
 use glam::{DVec2, DVec3, IVec2, UVec2};
 use gnomon::cause::{Cause, Replay};
 use gnomon::evaluate::Evaluation;
@@ -15,6 +13,8 @@ use gnomon::receiver::{PixelClass, Receiver};
 use gnomon::scene::Segment;
 use gnomon::technique::Spec;
 use gnomon::technique::map::{DepthFormat, Lookup, Settings};
+use support::scenes::shipped;
+use support::shot::{Shot, named, parsed, shipped_scenes};
 
 const SIZE: UVec2 = UVec2::new(200, 150);
 
@@ -198,7 +198,7 @@ fn what_is_left_to_precision_is_little_and_stands_at_boundaries() {
     let (mut asked, mut beside) = (0, 0);
     for scene in shipped_scenes(SIZE) {
         for light in &scene.lights {
-            let shot = Shot::new(&scene, light);
+            let shot = Shot::new(&scene, &light.name);
             for typed in SPECS {
                 let spec = shot.supported(typed);
                 let evaluation = shot.evaluate_spec(&spec);
@@ -230,8 +230,8 @@ fn what_is_left_to_precision_is_little_and_stands_at_boundaries() {
 /// The tolerances hold few pixels to be at a boundary: of a hundred answers turned round, they excuse hardly one.
 #[test]
 fn an_answer_turned_round_is_not_excused() {
-    let scene = shipped("torus", SIZE);
-    let shot = Shot::new(&scene, &scene.lights[0]);
+    let scene = shipped("torus", SIZE.to_array());
+    let shot = Shot::new(&scene, "lamp");
     let evaluation = shot.evaluate("map");
     let twin = Twin::new(&shot, &parsed("map"));
     let sampled: Vec<u32> = shot.asked().into_iter().step_by(7).collect();

@@ -3,14 +3,14 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
-#[path = "support/evaluated.rs"]
-mod evaluated;
+mod support;
 
-use evaluated::{Shot, shipped, shipped_scenes};
 use glam::UVec2;
 use gnomon::cause::Replay;
 use gnomon::evaluate::Evaluation;
 use gnomon::verdict::{LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
+use support::scenes::shipped;
+use support::shot::{Shot, shipped_scenes};
 
 const SIZE: UVec2 = UVec2::new(80, 60);
 
@@ -48,7 +48,7 @@ fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
     let mut evaluated = 0;
     for scene in shipped_scenes(SIZE) {
         for light in &scene.lights {
-            let shot = Shot::new(&scene, light);
+            let shot = Shot::new(&scene, &light.name);
             for spec in SPECS {
                 let what = format!("{}, light '{}', {spec}", scene.name, light.name);
                 check(&what, &shot.evaluate_spec(&shot.supported(spec)));
@@ -79,8 +79,8 @@ fn check(what: &str, evaluation: &Evaluation<'_>) {
 
 #[test]
 fn a_replay_that_ends_elsewhere_is_refused() {
-    let scene = shipped("triangle", SIZE);
-    let shot = Shot::new(&scene, &scene.lights[0]);
+    let scene = shipped("triangle", SIZE.to_array());
+    let shot = Shot::new(&scene, "lamp");
     let evaluation = shot.evaluate("map:bias=none");
     let judged = |replay: &Replay| ledger(&evaluation.verdict, &shot.question.truth.mask, &evaluation.mask, replay);
     let mut tampered = evaluation.replay.clone();

@@ -115,16 +115,8 @@ struct Suggestion<'a> {
 }
 
 impl<'a> Suggestion<'a> {
-    /// A name is near if at most a third of its letters (and at least two) were mistyped.
     fn new(name: &str, known: &'a [String]) -> Self {
-        let mistyped = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &candidate.to_lowercase());
-        let allowed = (name.chars().count() / 3).max(2);
-        let nearest = known
-            .iter()
-            .map(|candidate| (mistyped(candidate), candidate.as_str()))
-            .filter(|&(distance, _)| distance <= allowed)
-            .min();
-        Self { nearest: nearest.map(|(_, candidate)| candidate), known }
+        Self { nearest: crate::suggest::nearest(name, known.iter().map(String::as_str)), known }
     }
 }
 

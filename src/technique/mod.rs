@@ -9,6 +9,8 @@ mod cost;
 pub mod footprint;
 pub mod map;
 pub mod param;
+pub mod planar;
+pub mod projective_texture;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
@@ -32,7 +34,7 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map]
+    &[&map::Map, &planar::Planar, &projective_texture::ProjectiveTexture]
 }
 
 /// A shadow technique.
@@ -137,15 +139,4 @@ pub enum TechniqueError {
     /// The user asked to stop.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
-}
-
-/// " (did you mean 'x'?)" for the known word nearest to what was typed, if one is near enough to be a slip.
-pub(crate) fn nearest<'a>(typed: &str, known: impl Iterator<Item = &'a str>) -> String {
-    /// Jaro–Winkler similarity below which two words are not slips of each other.
-    const SLIP: f64 = 0.7;
-    known
-        .map(|word| (strsim::jaro_winkler(typed, word), word))
-        .filter(|(similarity, _)| *similarity > SLIP)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or_else(String::new, |(_, word)| format!(" (did you mean '{word}'?)"))
 }

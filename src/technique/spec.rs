@@ -1,6 +1,7 @@
 //! Technique specifications: `family:axis=value,axis=value` as typed, and canonically with every parameter spelled out.
 
-use super::{Technique, nearest, registry};
+use super::{Technique, registry};
+use crate::suggest::hint;
 use crate::technique::param::{Param, Value};
 use std::fmt;
 
@@ -72,7 +73,7 @@ impl Spec {
         let (family, rest) = trimmed.split_once(':').unwrap_or((trimmed, ""));
         let technique = registry().iter().copied().find(|t| t.id() == family).ok_or_else(|| SpecError::Family {
             typed: typed.to_owned(),
-            hint: nearest(family, registry().iter().map(|t| t.id())),
+            hint: hint(family, registry().iter().map(|t| t.id())),
         })?;
         let params = technique.params();
         let mut values: Vec<(&'static str, Value)> = params.iter().map(|p| (p.name, p.default)).collect();
@@ -84,7 +85,7 @@ impl Spec {
             let index = params.iter().position(|p| p.name == key).ok_or_else(|| SpecError::Key {
                 family: technique.id(),
                 key: key.to_owned(),
-                hint: nearest(key, params.iter().map(|p| p.name)),
+                hint: hint(key, params.iter().map(|p| p.name)),
             })?;
             if seen.contains(&index) {
                 return Err(SpecError::Twice { key: key.to_owned(), typed: typed.to_owned() });
@@ -117,10 +118,11 @@ impl Spec {
         Self::parse(&format!("{}:{}", self.technique.id(), typed.join(",")))
     }
 
-    /// Every parameter with its value, in declared order.
+    /// "bias none → closed-form": the parameters in which another specification of the family differs.
     #[must_use]
-    pub fn values(&self) -> &[(&'static str, Value)] {
-        &self.values
+    pub fn changes_to(&self, other: &Self) -> String {
+        let changes = self.values.iter().zip(&other.values).filter(|(old, new)| old != new);
+        changes.map(|((name, old), (_, new))| format!("{name} {old} → {new}")).collect::<Vec<_>>().join(", ")
     }
 
     /// Only the parameters that differ from their defaults.
@@ -224,6 +226,7 @@ mod tests {
         let spec = Spec::parse("map:size=512,filter=pcf-box5").unwrap();
         assert_eq!(spec.with("size", "64").unwrap().short(), "map:size=64,filter=pcf-box5");
         assert!(spec.with("size", "0").is_err());
+        assert_eq!(spec.changes_to(&spec.with("size", "64").unwrap()), "size 512 → 64");
     }
 
     #[test]

@@ -254,3 +254,38 @@ pub(super) struct LookupUniform {
     float_step: f32,
     padding: u32,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::LookupUniform;
+    use crate::gpu::layout::{rust_layout, wgsl_layout};
+    use crate::technique::map::shader_modules;
+
+    #[test]
+    fn the_uniform_lies_as_the_shaders_read_it() {
+        let lookups: Vec<_> =
+            shader_modules().into_iter().filter(|(label, _)| label.starts_with("map lookup")).collect();
+        assert!(!lookups.is_empty());
+        for (label, files) in lookups {
+            let in_rust = rust_layout!(LookupUniform {
+                map_from_world,
+                plane_in_map_from_world,
+                light,
+                texels,
+                texel_at_q1,
+                metres_per_depth_terms,
+                kernel,
+                depth_sign,
+                closed_form_kernel,
+                raster_slack_texels,
+                cap_texels,
+                normal_texels,
+                depth_m,
+                fixed_step,
+                float_step,
+                padding,
+            });
+            assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
+        }
+    }
+}

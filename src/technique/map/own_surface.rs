@@ -77,7 +77,7 @@ mod tests {
     fn triangles_on_around_and_across_the_line_meet_it() {
         assert!(meets_either_way_round([[0.4, 0.0], [0.6, 0.0], [0.5, 1.0]]), "across");
         assert!(meets_either_way_round([[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]]), "around");
-        assert!(meets_either_way_round([[0.9, 0.0], [2.0, 0.0], [2.0, 2.0]]), "over an end");
+        assert!(meets_either_way_round([[0.9, 0.0], [2.0, 0.0], [0.9, 2.0]]), "over an end");
         assert!(meets_either_way_round([[1.0, 0.5], [2.0, 0.5], [2.0, 1.0]]), "at an end");
         assert!(meets_either_way_round([[0.5, 0.25], [0.5, -1.0], [1.0, -1.0]]), "touching with a corner");
     }

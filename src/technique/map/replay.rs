@@ -11,6 +11,7 @@ use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
 use crate::scene::Segment;
+use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
 use glam::IVec2;
 use rayon::prelude::*;
@@ -91,7 +92,7 @@ fn replay_pixel(
         let (value, found) = sampled(&placed, texel);
         let is_dark = value < 1.0;
         let own = found.filter(|_| is_dark).and_then(|found| self_shadowing(map, &receiver, &placed, texel, found));
-        Step { value, cause: own.unwrap_or_else(|| aliasing(map, pixel)) }
+        Step { value, cause: own.unwrap_or_else(|| aliasing_cause(map.footprint(pixel).as_ref())) }
     });
     let filter = placed.map_or(Step { value: 1.0, cause: Cause::FilterWidth }, |placed| {
         let (mut value, mut self_shadow, mut other) = (0.0, 0.0, 0.0);
@@ -187,22 +188,6 @@ fn self_shadowing(
     // In place of the bias there is, not on top of it.
     let unbiased = found.depth - map.lookup.hardware_bias(map.job.scene.triangle_in_world(triangle));
     Some(if map.lookup.is_lit(reference, unbiased) { Cause::Acne } else { Cause::Curvature })
-}
-
-/// The kind of edge aliasing at a pixel, by how large a texel is there and why.
-fn aliasing(map: &PreparedMap<'_>, pixel: u32) -> Cause {
-    match map.footprint(pixel) {
-        Some(footprint) if footprint.m > 1.0 => {
-            if footprint.perspective_factor >= footprint.projective_factor {
-                Cause::PerspectiveAliasing
-            } else {
-                Cause::ProjectiveAliasing
-            }
-        }
-        Some(_) => Cause::EdgeAliasing,
-        // Seen edge-on by the light, a texel's image has no bound: the tilt is to blame.
-        None => Cause::ProjectiveAliasing,
-    }
 }
 
 /// Where one pixel's lookup went, for people.
