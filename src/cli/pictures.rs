@@ -28,9 +28,7 @@ pub(super) fn write_run(
     let footprints: Vec<Option<Footprint>> = classes
         .par_iter()
         .enumerate()
-        .map(|(pixel, class)| {
-            evaluation.prepared.footprint(pixel as u32).filter(|_| *class == PixelClass::Asked)
-        })
+        .map(|(pixel, class)| evaluation.prepared.footprint(pixel as u32).filter(|_| *class == PixelClass::Asked))
         .collect();
     if footprints.iter().any(Option::is_some) {
         let m: Vec<Option<f32>> = footprints.iter().map(|f| f.map(|f| f.m as f32)).collect();

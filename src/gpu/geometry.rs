@@ -57,6 +57,11 @@ impl Geometry {
         Ok(Self { corners, every_range: ranges(|_| true), casting_ranges: ranges(|mesh| mesh.casts) })
     }
 
+    /// Three corners per triangle, laid out as [`CORNER_LAYOUT`]; `None` for a scene without triangles.
+    pub(crate) fn corners(&self) -> Option<&Buffer> {
+        self.corners.as_ref()
+    }
+
     /// Draws every triangle.
     pub(crate) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.draw(pass, &self.every_range);

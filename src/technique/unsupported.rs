@@ -12,9 +12,7 @@ pub enum Unsupported {
         handled: &'static str,
     },
     /// One frustum cannot hold what it must.
-    #[error(
-        "the receivers span {asked_deg:.0} degrees as seen from the light, one frustum holds {limit_deg:.0}"
-    )]
+    #[error("the receivers span {asked_deg:.0} degrees as seen from the light, one frustum holds {limit_deg:.0}")]
     FieldOfView {
         /// Full angle needed.
         asked_deg: f64,
