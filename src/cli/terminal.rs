@@ -74,10 +74,10 @@ impl Watch for Terminal {
         if work.bar.is_hidden() && work.began.elapsed() > PATIENCE {
             let (done, total) = (work.bar.position(), work.bar.length().unwrap_or(0));
             work.bar = ProgressBar::new(total).with_position(done).with_elapsed(work.began.elapsed());
-            work.bar.set_message(work.what.clone());
             if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta} left") {
                 work.bar.set_style(style);
             }
+            work.bar.set_message(work.what.clone());
         }
     }
 
