@@ -33,6 +33,8 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
             }
             other => other?,
         };
+        let predicted = evaluation.prepared.facts();
+        predicted.iter().for_each(|(label, value)| say(&format!("  {label:<18} {value}")));
         let before = Outcome::of(&evaluation);
         let asked = evaluation.verdict.pixels.asked;
         say(&format!("  {} of {asked} asked pixels are wrong\n", before.wrong));
@@ -80,18 +82,12 @@ fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome) -> S
             Ok(after) => effect(diagnosis.cause, before, after),
             Err(why) => why.clone(),
         };
-        text += &format!("  tried {}: {effect}\n", changed(subject.spec, fix));
+        text += &format!("  tried {}: {effect}\n", subject.spec.changes_to(fix));
     }
     if let Some(pixel) = diagnosis.worst.first() {
         text += &format!("  look closer: {}\n", subject.explain(*pixel));
     }
     text
-}
-
-/// "bias none → closed-form": the parameters in which two specifications differ.
-fn changed(from: &Spec, to: &Spec) -> String {
-    let changes = from.values().iter().zip(to.values()).filter(|(a, b)| a != b);
-    changes.map(|((name, old), (_, new))| format!("{name} {old} → {new}")).collect::<Vec<_>>().join(", ")
 }
 
 /// "acne 3120 → 0 px, peter-panning 0 → 44 px, wrong 3200 → 124 px, GPU time +2 %".

@@ -96,7 +96,7 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
             say(&format!("verdict: {named_wrong} by {error:+.4}: {}: {}", cause.name(), cause.meaning()));
             if let Some(fix) = spec.technique().remedies(&spec, cause).first() {
                 let subject = Subject { scene: &args.scene.scene, light: &light.name, spec: &spec, size };
-                say(&format!("knob: {}", fix.short()));
+                say(&format!("knob: {} ({})", spec.changes_to(fix), fix.short()));
                 say(&format!("next step: {}", subject.diagnose()));
             }
         }

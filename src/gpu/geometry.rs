@@ -57,17 +57,29 @@ impl Geometry {
         Ok(Self { corners, every_range: ranges(|_| true), casting_ranges: ranges(|mesh| mesh.casts) })
     }
 
+    /// Bytes on the GPU.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.corners.as_ref().map_or(0, Buffer::size)
+    }
+
+    /// Three corners per triangle, laid out as [`CORNER_LAYOUT`]; `None` for a scene without triangles.
+    pub(crate) fn corners(&self) -> Option<&Buffer> {
+        self.corners.as_ref()
+    }
+
     /// Draws every triangle.
     pub(crate) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw(pass, &self.every_range);
+        self.draw_triangles(pass, &self.every_range);
     }
 
     /// Draws the triangles that cast shadows.
     pub(crate) fn draw_casters(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw(pass, &self.casting_ranges);
+        self.draw_triangles(pass, &self.casting_ranges);
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, triangle_ranges: &[Range<u32>]) {
+    /// Draws ranges of triangle ids.
+    pub(crate) fn draw_triangles(&self, pass: &mut wgpu::RenderPass<'_>, triangle_ranges: &[Range<u32>]) {
         let Some(corners) = &self.corners else { return };
         pass.set_vertex_buffer(0, corners.slice(..));
         for range in triangle_ranges {

@@ -3,6 +3,7 @@
 //! B. Lloyd et al., "Warping and Partitioning for Low Error Shadow Maps", 2006: m is the largest extent of a texel's
 //! image in pixels; m > 1 is undersampled. Formulas: docs/footprint.md.
 
+use crate::cause::Cause;
 use glam::{DMat2, DMat4, DVec2, DVec3, UVec2};
 
 /// The footprint of one texel at one receiver.
@@ -68,6 +69,23 @@ impl Footprint {
             perspective_factor: input.texel_m / input.pixel_m,
             projective_factor: cosine(input.towards_eye) / cosine(input.towards_light),
         })
+    }
+}
+
+/// Which kind of aliasing a wrong texel with that footprint is.
+#[must_use]
+pub fn aliasing_cause(footprint: Option<&Footprint>) -> Cause {
+    match footprint {
+        Some(footprint) if footprint.m > 1.0 => {
+            if footprint.perspective_factor >= footprint.projective_factor {
+                Cause::PerspectiveAliasing
+            } else {
+                Cause::ProjectiveAliasing
+            }
+        }
+        Some(_) => Cause::EdgeAliasing,
+        // Seen edge-on by the light, a texel's image has no bound: the tilt is to blame.
+        None => Cause::ProjectiveAliasing,
     }
 }
 

@@ -19,6 +19,21 @@ pub enum Unsupported {
         /// Largest full angle.
         limit_deg: f64,
     },
+    /// The scene has no receiver plane.
+    #[error("the scene has no [[plane]] to throw shadows on")]
+    NoPlane,
+    /// The light lies in a receiver plane, where shadows have no size.
+    #[error("the light lies in plane {plane} of the scene")]
+    LightInPlane {
+        /// Number of the plane in the scene, from 1.
+        plane: usize,
+    },
+    /// Nothing that receives shadows lies on a plane.
+    #[error("no triangle that receives shadows lies on a [[plane]]: the nearest is {max_distance_m:.3e} m off")]
+    NonPlanarReceiver {
+        /// Largest distance of that triangle's corners from its nearest plane.
+        max_distance_m: f64,
+    },
     /// The adapter lacks something.
     #[error("this adapter lacks {what}")]
     MissingFeature {

@@ -8,6 +8,9 @@ use gnomon::scene;
 use std::f64::consts::TAU;
 use testing::{Random, Shape};
 
+pub(crate) mod files;
+pub(crate) mod outline;
+pub(crate) mod scenes;
 #[path = "../../src/cast/testing.rs"]
 pub(crate) mod testing;
 

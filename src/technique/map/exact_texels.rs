@@ -8,23 +8,23 @@ use rayon::prelude::*;
 
 /// One texel of the ideal map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ExactTexel {
+pub(in crate::technique) struct ExactTexel {
     /// Depth with the rasteriser's bias; the cleared value where nothing casts.
-    pub(super) depth: f64,
+    pub(in crate::technique) depth: f64,
     /// The triangle it came from.
-    pub(super) triangle: Option<u32>,
+    pub(in crate::technique) triangle: Option<u32>,
 }
 
 /// The texels that some lookups read, sorted by index.
 #[derive(Debug)]
-pub(super) struct ExactTexels {
-    pub(super) indices: Vec<u32>,
+pub(in crate::technique) struct ExactTexels {
+    pub(in crate::technique) indices: Vec<u32>,
     texels: Vec<ExactTexel>,
 }
 
 impl ExactTexels {
     /// Casts through the centres of the texels with these indices (row by row; any order, repeats allowed).
-    pub(super) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, mut indices: Vec<u32>) -> Self {
+    pub(in crate::technique) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, mut indices: Vec<u32>) -> Self {
         indices.par_sort_unstable();
         indices.dedup();
         let texels = indices.par_iter().map(|index| exact_texel(scene, casters, lookup, *index)).collect();
@@ -32,12 +32,12 @@ impl ExactTexels {
     }
 
     /// Position of a texel in `indices`; only for texels that were asked for.
-    pub(super) fn rank(&self, index: u32) -> Option<usize> {
+    pub(in crate::technique) fn rank(&self, index: u32) -> Option<usize> {
         self.indices.binary_search(&index).ok()
     }
 
     /// The texel at a rank.
-    pub(super) fn at(&self, rank: usize) -> ExactTexel {
+    pub(in crate::technique) fn at(&self, rank: usize) -> ExactTexel {
         self.texels[rank]
     }
 }

@@ -12,17 +12,21 @@ mod depth_format;
 mod exact_texels;
 pub mod filter;
 mod lookup;
+mod own_surface;
 mod passes;
 mod prepared;
 pub mod projection;
 mod remedies;
 mod replay;
 mod settings;
+mod texel_footprint;
 
 pub use depth_format::DepthFormat;
+pub(in crate::technique) use exact_texels::ExactTexels;
 pub use lookup::{Lookup, Outside, Placed};
 pub use passes::shader_modules;
-pub use settings::{Fit, Settings};
+pub use settings::{Around, Fit, Settings};
+pub(in crate::technique) use texel_footprint::texel_footprint;
 
 use super::param::{Choice, Kind, Param, Value};
 use super::{Job, Prepared, Spec, Technique, TechniqueError, Unsupported};
@@ -66,15 +70,55 @@ impl Technique for Map {
     }
 }
 
+/// Far beyond any scene f32 can hold with useful precision.
+const MAX_M: f64 = 1e12;
+/// Below any scene f32 can hold with useful precision.
+const MIN_M: f64 = 1e-12;
+
+/// The parameters of a light frustum's fit, which every technique with such a frustum declares.
+#[must_use]
+pub(in crate::technique) fn fit_params() -> Vec<Param> {
+    let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
+    let real = |min, max| Kind::Real { min, max, auto: false };
+    let auto = |min, max| Kind::Real { min, max, auto: true };
+    let around = ["scene", "receivers", "manual"].into_iter().map(Choice::plain).collect();
+    vec![
+        param(
+            "fit",
+            "",
+            Kind::Choice(around),
+            Value::Choice("scene", None),
+            "what the light frustum encloses; manual: width 10 m, near 1 m, far 30 m, 5 m back, unless given",
+        ),
+        param(
+            "fit_margin_texels",
+            "texels",
+            real(0.0, 8.0),
+            Value::Real(1.0),
+            "rim around the fit beyond the kernel's radius and one texel",
+        ),
+        param("near_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's near plane; auto: fitted"),
+        param("far_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's far plane; auto: fitted"),
+        param("width_m", "m", auto(MIN_M, MAX_M), Value::Auto, "width of a directional light's map; auto: fitted"),
+        param(
+            "pull_back_m",
+            "m",
+            auto(0.0, MAX_M),
+            Value::Auto,
+            "how far behind the scene's centre a directional light's view starts; auto: the scene's radius",
+        ),
+        param("fov_deg", "degrees", auto(0.01, 170.0), Value::Auto, "full angle of a point or spot light's map"),
+        param("phase_u_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted sideways, for jitter"),
+        param("phase_v_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted upwards, for jitter"),
+    ]
+}
+
 static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
     let plain = |names: &[&'static str]| Kind::Choice(names.iter().copied().map(Choice::plain).collect());
     let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
     let real = |min, max| Kind::Real { min, max, auto: false };
     let auto = |min, max| Kind::Real { min, max, auto: true };
-    /// Far beyond any scene f32 can hold with useful precision.
-    const MAX_M: f64 = 1e12;
-    const MIN_M: f64 = 1e-12;
-    vec![
+    let mut params = vec![
         param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the map"),
         param(
             "projection",
@@ -141,32 +185,7 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             Value::Real(64.0),
             "largest closed-form bias at grazing light",
         ),
-        param(
-            "fit",
-            "",
-            plain(&["scene", "receivers", "manual"]),
-            Value::Choice("scene", None),
-            "what the light frustum encloses; manual: width 10 m, near 1 m, far 30 m, 5 m back, unless given",
-        ),
-        param(
-            "fit_margin_texels",
-            "texels",
-            real(0.0, 8.0),
-            Value::Real(1.0),
-            "rim around the fit beyond the kernel's radius and one texel",
-        ),
-        param("near_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's near plane; auto: fitted"),
-        param("far_m", "m", auto(MIN_M, MAX_M), Value::Auto, "light's far plane; auto: fitted"),
-        param("width_m", "m", auto(MIN_M, MAX_M), Value::Auto, "width of a directional light's map; auto: fitted"),
-        param(
-            "pull_back_m",
-            "m",
-            auto(0.0, MAX_M),
-            Value::Auto,
-            "how far behind the scene's centre a directional light's view starts; auto: the scene's radius",
-        ),
-        param("fov_deg", "degrees", auto(0.01, 170.0), Value::Auto, "full angle of a point or spot light's map"),
-        param("phase_u_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted sideways, for jitter"),
-        param("phase_v_texels", "texels", real(-1.0, 1.0), Value::Real(0.0), "map shifted upwards, for jitter"),
-    ]
+    ];
+    params.extend(fit_params());
+    params
 });

@@ -2,13 +2,13 @@
 
 use super::lookup::Lookup;
 use super::passes::MapPasses;
-use super::{Placed, Settings};
+use super::{Placed, Settings, texel_footprint};
 use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
-use crate::technique::footprint::{Footprint, FootprintInput};
+use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
@@ -16,7 +16,6 @@ pub(super) struct PreparedMap<'j> {
     pub(super) lookup: Lookup,
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
-    clip_from_world: DMat4,
     pub(super) scene_radius_m: f64,
 }
 
@@ -28,37 +27,12 @@ impl<'j> PreparedMap<'j> {
         let lookup = Lookup::new(frustum, &settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = MapPasses::new(job.gpu, &settings, &lookup, &receivers)?;
-        let clip_from_world = job.scene.camera.clip_from_world(job.scene.image_size);
         let scene_radius_m = job.scene.bounds().radius();
-        Ok(Self { job, settings, lookup, passes, receivers, clip_from_world, scene_radius_m })
+        Ok(Self { job, settings, lookup, passes, receivers, scene_radius_m })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
-    }
-
-    fn footprint_of(&self, receiver: &Receiver) -> Option<Footprint> {
-        let frustum = &self.lookup.frustum;
-        let (_, _, q) = self.lookup.project(receiver.point_in_world).ok()?;
-        let camera = &self.job.scene.camera;
-        let to_eye = camera.eye.as_dvec3() - receiver.point_in_world;
-        let light = self.job.light.homogeneous();
-        let to_light = light.truncate() - receiver.point_in_world * light.w;
-        // q is the distance along the axis; the texel's width across the ray grows with the ray's length.
-        let along_ray = if light.w == 0.0 { 1.0 } else { to_light.length() / q };
-        let pixel_at_unit_distance = 2.0 * (0.5 * camera.fov_y_rad).tan() / f64::from(self.job.scene.image_size.y);
-        Footprint::new(&FootprintInput {
-            clip_from_world: &self.clip_from_world,
-            image_size: self.job.scene.image_size,
-            map_from_world: &frustum.map_from_world.as_dmat4(),
-            map_size: frustum.texels,
-            point_in_world: receiver.point_in_world,
-            normal_in_world: receiver.normal_in_world,
-            towards_eye: to_eye.normalize_or_zero(),
-            towards_light: to_light.normalize_or_zero(),
-            texel_m: frustum.texel_m(q).max_element() * along_ray,
-            pixel_m: pixel_at_unit_distance * to_eye.length(),
-        })
     }
 
     /// What the bias does at a placed receiver, and what it should do.
@@ -128,7 +102,7 @@ impl Prepared for PreparedMap<'_> {
     }
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {
-        self.receiver(pixel).and_then(|receiver| self.footprint_of(&receiver))
+        texel_footprint(&self.job, &self.lookup, &self.receiver(pixel)?)
     }
 }
 

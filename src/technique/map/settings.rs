@@ -58,6 +58,27 @@ pub enum Around {
     Manual,
 }
 
+impl Fit {
+    /// Reads the parameters that [`fit_params`](super::fit_params) declares.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Self {
+        Self {
+            around: match spec.choice("fit").0 {
+                "receivers" => Around::Receivers,
+                "manual" => Around::Manual,
+                _ => Around::Scene,
+            },
+            margin_texels: spec.real("fit_margin_texels"),
+            near_m: spec.real_or_auto("near_m"),
+            far_m: spec.real_or_auto("far_m"),
+            width_m: spec.real_or_auto("width_m"),
+            pull_back_m: spec.real_or_auto("pull_back_m"),
+            fov_rad: spec.real_or_auto("fov_deg").map(f64::to_radians),
+            phase_texels: glam::DVec2::new(spec.real("phase_u_texels"), spec.real("phase_v_texels")),
+        }
+    }
+}
+
 impl Settings {
     /// Reads a `map` specification, whose parameters are declared in the family's list.
     #[must_use]
@@ -83,20 +104,7 @@ impl Settings {
                 normal_texels: spec.real("bias_normal_texels"),
                 cap_texels: spec.real("bias_cap_texels"),
             },
-            fit: Fit {
-                around: match spec.choice("fit").0 {
-                    "receivers" => Around::Receivers,
-                    "manual" => Around::Manual,
-                    _ => Around::Scene,
-                },
-                margin_texels: spec.real("fit_margin_texels"),
-                near_m: spec.real_or_auto("near_m"),
-                far_m: spec.real_or_auto("far_m"),
-                width_m: spec.real_or_auto("width_m"),
-                pull_back_m: spec.real_or_auto("pull_back_m"),
-                fov_rad: spec.real_or_auto("fov_deg").map(f64::to_radians),
-                phase_texels: glam::DVec2::new(spec.real("phase_u_texels"), spec.real("phase_v_texels")),
-            },
+            fit: Fit::of(spec),
         }
     }
 

@@ -1,0 +1,68 @@
+//! A projective texture ready to run for one light: the fitted frustum, the GPU objects, and what replays need.
+
+use super::passes::PicturePasses;
+use super::{Settings, replay};
+use crate::cause::Replay;
+use crate::mask::Mask;
+use crate::receiver::{PixelClass, Receiver};
+use crate::technique::footprint::Footprint;
+use crate::technique::map::{Lookup, texel_footprint};
+use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
+use glam::DVec3;
+
+pub(super) struct PreparedPicture<'j> {
+    pub(super) job: Job<'j>,
+    pub(super) settings: Settings,
+    pub(super) lookup: Lookup,
+    passes: PicturePasses,
+    receivers: ReceiverBuffer,
+}
+
+impl<'j> PreparedPicture<'j> {
+    pub(super) fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+        let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
+        let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
+        let frustum = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
+        let lookup = Lookup::new(frustum, &settings.map, job.light);
+        let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
+        let passes = PicturePasses::new(&job, &settings, &lookup, &receivers)?;
+        Ok(Self { job, settings, lookup, passes, receivers })
+    }
+
+    pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
+        self.job.receivers.pixels.get(pixel as usize).copied().flatten()
+    }
+}
+
+impl Prepared for PreparedPicture<'_> {
+    fn run(&self) -> Result<Answer, TechniqueError> {
+        let passes = self.passes.run(&self.job, &self.receivers)?;
+        Ok(Answer { mask: self.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
+    }
+
+    fn bytes(&self) -> u64 {
+        self.passes.bytes() + self.receivers.bytes()
+    }
+
+    fn facts(&self) -> Vec<(String, String)> {
+        let frustum = &self.lookup.frustum;
+        let meshes = &self.job.scene.meshes;
+        let receiving = meshes.iter().filter(|mesh| mesh.receives && self.settings.takes_shadow(mesh)).count();
+        vec![
+            ("light near, far".to_owned(), format!("{:.6} m, {:.6} m", frustum.near_m, frustum.far_m)),
+            ("thrown on".to_owned(), format!("{receiving} of {} meshes", meshes.len())),
+        ]
+    }
+
+    fn replay(&self, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
+        Ok(replay::replay(self, answer, pixels))
+    }
+
+    fn lookup_facts(&self, pixel: u32) -> Result<Vec<(String, String)>, TechniqueError> {
+        Ok(replay::lookup_facts(self, pixel))
+    }
+
+    fn footprint(&self, pixel: u32) -> Option<Footprint> {
+        texel_footprint(&self.job, &self.lookup, &self.receiver(pixel)?)
+    }
+}
