@@ -27,6 +27,8 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let index = args.pixel.y * size.x + args.pixel.x;
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
+    let classes = view.receivers.classify(&scene, light);
+    let prepared = prepare(&spec, &view, light, &classes)?;
     say(&format!(
         "pixel {},{} of {}, light '{}', {}",
         args.pixel.x,
@@ -39,7 +41,6 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
         say("  background: no geometry at this pixel's centre");
         return Ok(exit::OK);
     };
-    let classes = view.receivers.classify(&scene, light);
     say(&surface(&scene, &receiver));
     if terminator(&scene, &view.receivers, light)[index as usize] {
         say(
@@ -67,7 +68,6 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
         say("  undecided: the verdict changes when the receiver moves by its own rounding error");
         return Ok(exit::OK);
     };
-    let prepared = prepare(&spec, &view, light, &classes)?;
     let mask = prepared.run()?.mask;
     let answer = mask.pixels[index as usize].map_or(f32::NAN, crate::mask::Visibility::get);
     say(&format!("  truth            {}\n  technique        {answer}", exact.get()));

@@ -65,13 +65,19 @@ impl Watch for Terminal {
         let mut guard = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(work) = guard.as_mut() else { return };
         work.bar.inc(units);
+        if Some(work.bar.position()) >= work.bar.length() {
+            // What is done leaves the screen to the results.
+            work.bar.finish_and_clear();
+            *guard = None;
+            return;
+        }
         if work.bar.is_hidden() && work.began.elapsed() > PATIENCE {
             let (done, total) = (work.bar.position(), work.bar.length().unwrap_or(0));
             work.bar = ProgressBar::new(total).with_position(done).with_elapsed(work.began.elapsed());
-            work.bar.set_message(work.what.clone());
             if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta} left") {
                 work.bar.set_style(style);
             }
+            work.bar.set_message(work.what.clone());
         }
     }
 
