@@ -30,14 +30,16 @@ fn visibility(receiver: Receiver) -> f32 {
         return 1.0;
     }
     let uv = in_map.xy / q;
-    let depth = in_map.z / q;
-    if any(uv < vec2f(0.0)) || any(uv >= vec2f(1.0)) || depth < 0.0 || depth > 1.0 {
+    if any(uv < vec2f(0.0)) || any(uv >= vec2f(1.0)) {
         return 1.0;
     }
-    return filter_visibility(uv * lookup.texels, depth);
+    return filter_visibility(uv * lookup.texels, NO_DEPTH);
 }
 
-// Whether a texel is white; texels outside the picture are. There is no depth to compare.
+// Stands where a map's lookup has a depth to compare: the picture has none.
+const NO_DEPTH: f32 = 0.0;
+
+// Whether a texel is white; texels outside the picture are.
 fn is_lit(depth: f32, texel: vec2i) -> bool {
     if any(texel < vec2i(0)) || any(texel >= vec2i(lookup.texels)) {
         return true;

@@ -10,8 +10,9 @@ use crate::verdict::Verdict;
 use anyhow::Context;
 use std::path::Path;
 
-/// What is checked when neither the command line nor the scene says: the default map, and a finer, filtered one.
-const DEFAULT_SPECS: [&str; 2] = ["map", "map:size=2048,filter=pcf-box3"];
+/// What is checked when neither the command line nor the scene says: the default map, a finer, filtered one, and stencil
+/// volumes.
+const DEFAULT_SPECS: [&str; 3] = ["map", "map:size=2048,filter=pcf-box3", "volume"];
 
 /// One technique to run for one light, and the limits on it.
 #[derive(Debug)]

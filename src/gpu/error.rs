@@ -46,14 +46,14 @@ pub enum GpuError {
         /// The driver's words.
         why: String,
     },
-    /// Something is larger than the adapter can hold.
-    #[error("{what} of {asked} exceeds the adapter's limit of {limit}")]
+    /// Something is larger than the adapter or gnomon can hold.
+    #[error("{what} of {asked} exceeds the limit of {limit} here")]
     TooLarge {
         /// What is too large, with its unit.
         what: String,
         /// The size asked for.
         asked: u64,
-        /// The adapter's limit.
+        /// The limit.
         limit: u64,
     },
 }

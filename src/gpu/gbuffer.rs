@@ -20,6 +20,9 @@ pub struct GBuffer {
     pub triangles: Vec<Option<u32>>,
 }
 
+/// Most pixels of one picture. Receivers, truth and replay take about 130 bytes a pixel: this many need 8 GB.
+const MAX_PIXELS: u64 = 1 << 26;
+
 impl GBuffer {
     /// Rasterises the scene from its camera: depth reversed, nothing culled.
     ///
@@ -27,13 +30,14 @@ impl GBuffer {
     /// [`GpuError::TooLarge`] if the picture exceeds the adapter's limit, or what the device reported.
     pub fn render(gpu: &Gpu, geometry: &Geometry, scene: &Scene) -> Result<Self, GpuError> {
         let size = scene.image_size;
+        let too_large = |what: &str, asked: u64, limit: u64| GpuError::TooLarge { what: what.to_owned(), asked, limit };
         let limit = gpu.limits().texture_side;
         if size.max_element() > limit {
-            return Err(GpuError::TooLarge {
-                what: "a picture side in pixels".to_owned(),
-                asked: size.max_element().into(),
-                limit: limit.into(),
-            });
+            return Err(too_large("a picture side in pixels", size.max_element().into(), limit.into()));
+        }
+        let pixels = u64::from(size.x) * u64::from(size.y);
+        if pixels > MAX_PIXELS {
+            return Err(too_large("a picture's number of pixels", pixels, MAX_PIXELS));
         }
         let texture = |label, format, usage| {
             gpu.device.create_texture(&TextureDescriptor {

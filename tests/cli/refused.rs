@@ -94,8 +94,9 @@ fn sizes_and_pixels_stay_within_bounds() {
     let folder = scene_in_temp();
     let refused = |line: &str, words: &[&str]| assert_refused(folder.path(), line, words);
     // No adapter draws a picture this wide.
-    refused("check scene --size 65536x1 -t map:size=8 --out out", &["65536", "the adapter's limit of"]);
-    refused("truth scene --light sun --size 65536x1 -o out/x.png", &["65536", "the adapter's limit of"]);
+    refused("check scene --size 65536x1 -t map:size=8 --out out", &["65536", "the limit of"]);
+    refused("truth scene --light sun --size 65536x1 -o out/x.png", &["65536", "the limit of"]);
+    refused("truth scene --light sun --size 16000x16000 -o out/x.png", &["256000000", "the limit of"]);
     refused("explain scene -t map:size=8 --light sun --pixel 64,0", &["pixel 64,0", "outside", "64 x 48"]);
     refused("explain scene -t map:size=8 --light sun --pixel 1x1", &["'1x1'", "512,400"]);
     refused("explain scene -t map:size=8 --light sun --pixel -1,0", &["-1"]);

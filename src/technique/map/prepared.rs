@@ -102,7 +102,9 @@ impl Prepared for PreparedMap<'_> {
     }
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {
-        texel_footprint(&self.job, &self.lookup, &self.receiver(pixel)?)
+        let receiver = self.receiver(pixel)?;
+        let (_, _, q) = self.lookup.project(receiver.point_in_world).ok()?;
+        texel_footprint(&self.job, &self.lookup.frustum, &receiver, q)
     }
 }
 

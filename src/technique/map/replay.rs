@@ -10,6 +10,7 @@ use crate::cast::Hit;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
+use crate::scene::Segment;
 use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
 use glam::IVec2;
@@ -76,8 +77,7 @@ fn replay_pixel(
     let receiver = map.receiver(pixel)?;
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
     let segment = map.job.light.segment_from(receiver.point_in_world, map.scene_radius_m);
-    let mut hits = Vec::new();
-    map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
+    let hits = blockers(map, &receiver, &segment);
     let exact = visibility(hits.is_empty());
 
     let coverage = coverage(map, &receiver, &hits);
@@ -124,6 +124,16 @@ fn replay_pixel(
     Some((exact, [coverage, bias, sampling, filter, precision(stored_texels), precision(answered)]))
 }
 
+/// What blocks a segment from a receiver, by the truth's definition: neither the receiver's triangle nor what continues
+/// it in its plane.
+fn blockers(map: &PreparedMap<'_>, receiver: &Receiver, segment: &Segment) -> Vec<Hit> {
+    let casters = map.job.casters;
+    let mut hits = Vec::new();
+    casters.all_hits(segment, Some(receiver.triangle), &mut hits);
+    hits.retain(|hit| !casters.continues(receiver.triangle, hit.triangle));
+    hits
+}
+
 fn visibility(is_lit: bool) -> f64 {
     if is_lit { 1.0 } else { 0.0 }
 }
@@ -146,8 +156,7 @@ fn coverage(map: &PreparedMap<'_>, receiver: &Receiver, hits: &[Hit]) -> Step {
 /// The exact ray with the bias: blockers that the comparison cannot tell from the receiver are not there.
 fn biased(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed) -> f64 {
     let segment = map.job.light.segment_from(placed.point_in_world, map.scene_radius_m);
-    let mut hits = Vec::new();
-    map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
+    let hits = blockers(map, receiver, &segment);
     let blocks = |hit: &Hit| {
         let Ok((_, depth, _)) = map.lookup.project(segment.from.lerp(segment.to, hit.t)) else { return false };
         let stored = depth + map.lookup.hardware_bias(map.job.scene.triangle_in_world(hit.triangle));

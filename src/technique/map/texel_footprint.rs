@@ -1,14 +1,18 @@
 //! The footprint of a map's texel at a receiver: docs/footprint.md.
 
-use super::lookup::Lookup;
+use super::projection::LightFrustum;
 use crate::receiver::Receiver;
 use crate::technique::Job;
 use crate::technique::footprint::{Footprint, FootprintInput};
 
-/// `None` outside the map, and where the light sees the receiver's surface edge-on.
-pub(in crate::technique) fn texel_footprint(job: &Job<'_>, lookup: &Lookup, receiver: &Receiver) -> Option<Footprint> {
-    let (frustum, camera, image_size) = (&lookup.frustum, &job.scene.camera, job.scene.image_size);
-    let (_, _, q) = lookup.project(receiver.point_in_world).ok()?;
+/// For a receiver whose place in the map has the homogeneous `q`. `None` where the light sees its surface edge-on.
+pub(in crate::technique) fn texel_footprint(
+    job: &Job<'_>,
+    frustum: &LightFrustum,
+    receiver: &Receiver,
+    q: f64,
+) -> Option<Footprint> {
+    let (camera, image_size) = (&job.scene.camera, job.scene.image_size);
     let to_eye = camera.eye.as_dvec3() - receiver.point_in_world;
     let light = job.light.homogeneous();
     let to_light = light.truncate() - receiver.point_in_world * light.w;

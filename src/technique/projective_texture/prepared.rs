@@ -8,7 +8,7 @@ use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
 use crate::technique::map::{Lookup, texel_footprint};
 use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 pub(super) struct PreparedPicture<'j> {
     pub(super) job: Job<'j>,
@@ -31,6 +31,15 @@ impl<'j> PreparedPicture<'j> {
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
+    }
+
+    /// (uv × texels, q) of a point; `None` behind the light and beside the picture. Its depth does not matter.
+    pub(super) fn place(&self, point_in_world: DVec3) -> Option<(DVec2, f64)> {
+        let frustum = &self.lookup.frustum;
+        let in_map = frustum.project(point_in_world);
+        let uv = in_map.truncate().truncate() / in_map.w;
+        let is_inside = in_map.w > 0.0 && uv.min_element() >= 0.0 && uv.max_element() < 1.0;
+        is_inside.then(|| (uv * frustum.texels.as_dvec2(), in_map.w))
     }
 }
 
@@ -63,6 +72,8 @@ impl Prepared for PreparedPicture<'_> {
     }
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {
-        texel_footprint(&self.job, &self.lookup, &self.receiver(pixel)?)
+        let receiver = self.receiver(pixel)?;
+        let (_, q) = self.place(receiver.point_in_world)?;
+        texel_footprint(&self.job, &self.lookup.frustum, &receiver, q)
     }
 }

@@ -46,11 +46,9 @@ fn takes_shadow(picture: &PreparedPicture<'_>, receiver: &Receiver) -> bool {
     picture.settings.takes_shadow(picture.job.scene.mesh_of(receiver.triangle))
 }
 
-/// Where the picture is read for a receiver, in texels; `None` where it is not thrown on it.
-fn position(picture: &PreparedPicture<'_>, receiver: &Receiver) -> Option<Result<DVec2, Outside>> {
-    let placed =
-        || picture.lookup.project(receiver.point_in_world).map(|(position_in_texels, _, _)| position_in_texels);
-    takes_shadow(picture, receiver).then(placed)
+/// Where the picture is read for a receiver, in texels; `None` where it is not.
+fn position(picture: &PreparedPicture<'_>, receiver: &Receiver) -> Option<DVec2> {
+    takes_shadow(picture, receiver).then(|| picture.place(receiver.point_in_world))?.map(|(position, _)| position)
 }
 
 fn each_tap(picture: &PreparedPicture<'_>, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
@@ -62,7 +60,7 @@ fn each_tap(picture: &PreparedPicture<'_>, position_in_texels: DVec2, tap: &mut 
 fn texels_read(picture: &PreparedPicture<'_>, pixels: &[u32]) -> ExactTexels {
     let of_pixel = |pixel: &u32| {
         let mut indices = Vec::new();
-        if let Some(Ok(at)) = picture.receiver(*pixel).and_then(|receiver| position(picture, &receiver)) {
+        if let Some(at) = picture.receiver(*pixel).and_then(|receiver| position(picture, &receiver)) {
             indices.extend(picture.lookup.texel_index(at.floor().as_ivec2()));
             each_tap(picture, at, &mut |texel, _| indices.extend(picture.lookup.texel_index(texel)));
         }
@@ -91,7 +89,7 @@ fn replay_pixel(
     let exact = lit(picture.job.casters.any_hit(&segment, Some(receiver.triangle)).is_none());
 
     let (model, coverage) = line_through(picture, &receiver, &segment);
-    let position = position(picture, &receiver).and_then(Result::ok);
+    let position = position(picture, &receiver);
     let sampling = position.map_or(1.0, |at| white(picture, texels, at.floor().as_ivec2()));
     let filter = position.map_or(1.0, |at| {
         let mut value = 0.0;
@@ -119,11 +117,11 @@ fn line_through(picture: &PreparedPicture<'_>, receiver: &Receiver, segment: &Se
     let line = Segment { from: segment.to, to: segment.from + away * beyond_all_m };
     let mut hits = Vec::new();
     picture.job.casters.all_hits(&line, None, &mut hits);
-    let outside = picture.lookup.project(receiver.point_in_world).err();
-    let seen = hits.iter().map(|hit| picture.lookup.project(line.from.lerp(line.to, hit.t)).err());
-    let unseen: Vec<Option<Outside>> = seen.collect();
-    let is_black = outside.is_none() && unseen.contains(&None);
-    let cause = match outside.or_else(|| unseen.into_iter().flatten().next()) {
+    let is_in_picture = picture.place(receiver.point_in_world).is_some();
+    let clipped_by = hits.iter().map(|hit| picture.lookup.project(line.from.lerp(line.to, hit.t)).err());
+    let clipped_by: Vec<Option<Outside>> = clipped_by.collect();
+    let is_black = is_in_picture && clipped_by.contains(&None);
+    let cause = match clipped_by.into_iter().flatten().next().filter(|_| is_in_picture) {
         Some(Outside::Near) => Cause::ClippingNear,
         Some(Outside::Far) => Cause::ClippingFar,
         Some(Outside::Frustum) | None => Cause::ClippingFrustum,
@@ -135,10 +133,10 @@ fn line_through(picture: &PreparedPicture<'_>, receiver: &Receiver, segment: &Se
 pub(super) fn lookup_facts(picture: &PreparedPicture<'_>, pixel: u32) -> Vec<(String, String)> {
     let Some(receiver) = picture.receiver(pixel) else { return Vec::new() };
     let fact = |label: &str, value: String| (label.to_owned(), value);
-    let at = match position(picture, &receiver) {
-        None => return vec![fact("picture", "not thrown on this mesh, which casts: lit".to_owned())],
-        Some(Err(outside)) => return vec![fact("picture", format!("outside ({outside:?}): lit"))],
-        Some(Ok(at)) => at,
+    let Some(at) = position(picture, &receiver) else {
+        let is_thrown = takes_shadow(picture, &receiver);
+        let why = if is_thrown { "does not reach here: lit" } else { "not thrown on this mesh, which casts: lit" };
+        return vec![fact("picture", why.to_owned())];
     };
     let texels = texels_read(picture, &[pixel]);
     let mut facts = vec![fact("position", format!("({:.4}, {:.4}) texels", at.x, at.y))];

@@ -103,7 +103,7 @@ impl<'j> PreparedVolume<'j> {
         let at_far = far_point.filter(|_| is_cut_off).map(|point| self.counter.at(point, None));
         let reached = at_surface.reached() - minus(at_far, |count| count.behind);
         // zp-plus draws what is missing at the near plane.
-        let starts_at_near = self.volumes.near_casters.is_none();
+        let starts_at_near = self.volumes.sides.contains(&Side::Before) && self.volumes.near_casters.is_none();
         let at_near = starts_at_near.then(|| self.counter.at(self.eye.near_point(pixel), None));
         let from_near = reached - minus(at_near, |count| count.before);
         let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x);

@@ -51,8 +51,8 @@ fn replay_pixel(
     let receiver = volume.receiver(pixel)?;
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
     let counts = volume.counts(pixel)?;
-    let radius_m = job.scene.bounds().radius();
-    let exact = match truth::of_receiver(job.casters, job.light, &receiver, volume.eye.position_in_world(), radius_m) {
+    let (eye, radius_m) = (volume.eye.position_in_world(), volume.counter.scene_radius_m);
+    let exact = match truth::of_receiver(job.casters, job.light, &receiver, eye, radius_m) {
         Truth::Known(visibility) => f64::from(visibility.get()),
         Truth::Undecided => return None,
     };
