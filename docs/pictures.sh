@@ -18,13 +18,13 @@ cause() {
 
 cause edge-aliasing        torus       lamp map:size=4096
 cause perspective-aliasing posts       sun  map:size=1024
-cause projective-aliasing  polygons-69 lamp map:size=256,bias=slope
+cause projective-aliasing  grazing     sun  map:size=256
 cause acne                 triangle    sun  map:size=256,bias=none
-cause curvature            torus       lamp map:size=64,bias=closed-form
+cause curvature            bunny       sun  map:size=512,fit=receivers
 cause peter-panning        contact     sun  map:size=4096,bias_depth_m=0.15
 cause clipping-near        torus       sun  map:near_m=6
 cause clipping-far         triangle    sun  map:far_m=4
-cause clipping-frustum     torus       sun  map:width_m=3
+cause clipping-frustum     torus       sun  map:width_m=1
 cause filter-width         polygons-32 lamp map:filter=pcf-box16
 cause precision            triangle    sun  map:format=depth16unorm,bias=none,far_m=1000000
 

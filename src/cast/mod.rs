@@ -127,6 +127,12 @@ impl Casters {
         self.surface_of[a as usize] == self.surface_of[b as usize]
     }
 
+    /// The id that stands for all triangles in the place of one: the id that hits carry.
+    #[must_use]
+    pub fn surface_of(&self, triangle: u32) -> u32 {
+        self.surface_of[triangle as usize]
+    }
+
     /// How many triangles cast, coinciding ones counted each. With [`Self::bounds`] and [`Self::content_hash`] another
     /// oracle proves that it was given the same casters.
     #[must_use]

@@ -6,7 +6,7 @@
 
 use super::Casters;
 use super::exact;
-use super::packed::{Crossing, PackedTriangle};
+use super::packed::Crossing;
 use super::ray::Ray;
 use crate::scene::Segment;
 use glam::DVec3;
@@ -38,7 +38,9 @@ impl Casters {
         self.each_candidate(&ray, own, |triangle, _| {
             match triangle.crossing(&ray) {
                 Crossing::Missed => {}
-                Crossing::Unsure { inside: false } if self.continues(own, triangle) => continuation.push(triangle.id),
+                Crossing::Unsure { inside: false } if own.is_some_and(|own| self.continues(own, triangle.id)) => {
+                    continuation.push(triangle.id);
+                }
                 Crossing::Unsure { .. } => unsure = true,
                 Crossing::Crossed => {
                     blocked = true;
@@ -79,13 +81,13 @@ impl Casters {
         blocked
     }
 
-    /// Whether a triangle shares a corner with the own one and lies in its plane, exactly.
-    fn continues(&self, own: Option<u32>, triangle: &PackedTriangle) -> bool {
-        own.is_some_and(|own| {
-            let [a, b, c] = self.corners_of[own as usize].map(|corner| corner.as_dvec3());
-            let corners = triangle.corners();
-            corners.iter().any(|corner| [a, b, c].contains(corner))
-                && corners.iter().all(|&corner| exact::side(a, b, c, corner) == 0.0)
-        })
+    /// Whether a triangle shares a corner with the own one and lies in its plane, exactly: no segment that starts on the
+    /// own triangle is blocked by it, though rounding may put the start on both.
+    #[must_use]
+    pub fn continues(&self, own: u32, triangle: u32) -> bool {
+        let corners = |triangle: u32| self.corners_of[triangle as usize].map(|corner| corner.as_dvec3());
+        let ([a, b, c], others) = (corners(own), corners(triangle));
+        others.iter().any(|other| [a, b, c].contains(other))
+            && others.iter().all(|&other| exact::side(a, b, c, other) == 0.0)
     }
 }

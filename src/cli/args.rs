@@ -46,8 +46,10 @@ pub(super) enum Command {
     #[command(after_help = "Example:\n  gnomon scaffold models/teapot.obj")]
     Scaffold(ScaffoldArgs),
     /// List the scenes of a folder, or the techniques and their parameters
+    #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes")]
     List(ListArgs),
     /// Tell what this machine can do: adapters, features, limits, oracles, versions
+    #[command(after_help = "Examples:\n  gnomon doctor\n  GNOMON_ADAPTER=1 gnomon doctor")]
     Doctor,
 }
 
@@ -56,7 +58,7 @@ pub(super) enum Command {
 pub(super) struct SceneArgs {
     /// Scene folder, scene.toml or OBJ file
     pub(super) scene: PathBuf,
-    /// Only this light [default: every light]
+    /// Only this light [default: every light; a command that answers for one light wants its name if there are several]
     #[arg(long, value_name = "NAME")]
     pub(super) light: Option<String>,
     /// Picture size in pixels, instead of the scene's
@@ -84,7 +86,7 @@ pub(super) struct CheckArgs {
     /// Write report.json and pictures here
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Further report formats to write to --out, separated by commas
+    /// Formats to write to --out besides report.json, separated by commas: csv, markdown, junit
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "out")]
     pub(super) format: Vec<String>,
 }

@@ -1,32 +1,22 @@
 //! `gnomon check`: every technique on every light of every scene, as a table and, with --out, as files.
 
 use super::args::CheckArgs;
-use super::context::{lights, load, open_gpu};
+use super::command::Subject;
+use super::context::{load, open_gpu};
 use super::output::OutFolder;
-use super::pictures;
-use super::terminal::{Terminal, complain, say, width};
-use super::{exit, report};
+use super::tasks::{Task, tasks};
+use super::terminal::{Terminal, complain, say_or_end, width};
+use super::{exit, pictures, report};
 use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, jittered};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
-use crate::report::model::{BudgetOutcome, Jitter, Report, Run};
+use crate::report::model::{Jitter, Report, Run, Status};
 use crate::report::table::table;
-use crate::scene::{Light, Scene};
+use crate::scene::Scene;
 use crate::suggest::hint;
 use crate::technique::{Spec, TechniqueError};
 use anyhow::{Context, bail};
-use std::path::Path;
-
-/// What is checked when neither the command line nor the scene says: the default map, and a finer, filtered one.
-const DEFAULT_SPECS: [&str; 2] = ["map", "map:size=2048,filter=pcf-box3"];
-
-/// One technique to run for one light, and the limits on it.
-struct Task<'s> {
-    light: &'s Light,
-    spec: Spec,
-    wrong_fraction: Option<f64>,
-    mean_abs: Option<f64>,
-}
+use std::path::{Path, PathBuf};
 
 /// The runs so far, and where their pictures go.
 struct Session<'a> {
@@ -35,147 +25,129 @@ struct Session<'a> {
     terminal: &'a Terminal,
     out: Option<OutFolder>,
     runs: Vec<Run>,
+    /// For every run, the command that looks deeper into it.
+    deeper: Vec<String>,
 }
 
 pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let exporters = exporters(&args.format)?;
     let specs = args.technique.iter().map(|typed| Spec::parse(typed)).collect::<Result<Vec<_>, _>>()?;
+    let out = args.out.as_deref().map(OutFolder::open).transpose()?;
     // Every scene is read before anything long begins: a mistake in the last one should not cost the work of the first.
     let scenes = args.scenes.iter().map(|path| load(path, args.size)).collect::<anyhow::Result<Vec<_>>>()?;
+    let scenes: Vec<(&Path, &Scene)> = args.scenes.iter().map(AsRef::as_ref).zip(&scenes).collect();
     let tasks: Vec<Vec<Task<'_>>> =
-        scenes.iter().map(|scene| tasks(scene, &specs, args)).collect::<anyhow::Result<_>>()?;
+        scenes.iter().map(|(path, scene)| tasks(path, scene, &specs, args)).collect::<anyhow::Result<_>>()?;
     let gpu = open_gpu()?;
-    let out = args.out.as_deref().map(OutFolder::open).transpose()?;
-    let mut session = Session { args, gpu: &gpu, terminal, out, runs: Vec::new() };
-    let ended = args.scenes.iter().zip(&scenes).zip(&tasks).try_for_each(|((path, scene), tasks)| {
+    let mut session = Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new() };
+    let ended = scenes.iter().zip(&tasks).try_for_each(|((path, scene), tasks)| {
         session.check_scene(path, scene, tasks).with_context(|| format!("scene '{}'", scene.name))
     });
     terminal.finish();
+    let code = ended.as_ref().map_or_else(exit::code_of, |()| session.verdict_code());
     // What is done is reported even when the rest was not to be.
-    session.conclude(&exporters)?;
-    ended?;
-    Ok(verdict_code(&session.runs))
+    let reported = session.report(&exporters, code);
+    if let (Err(_), Err(unwritten)) = (&ended, &reported) {
+        complain(&format!("error: {}", exit::message(unwritten)));
+    }
+    ended.and(reported)?;
+    Ok(code)
 }
 
 impl Session<'_> {
     fn check_scene(&mut self, path: &Path, scene: &Scene, tasks: &[Task<'_>]) -> anyhow::Result<()> {
         let view = View::new(self.gpu, scene)?;
-        for light in &scene.lights {
-            let mut of_light = tasks.iter().filter(|task| task.light.name == light.name).peekable();
-            if of_light.peek().is_none() {
-                continue;
-            }
-            let question = view.ask(light, self.terminal)?;
+        for of_light in tasks.chunk_by(|a, b| a.light.name == b.light.name) {
+            let question = view.ask(of_light[0].light, self.terminal)?;
             for task in of_light {
-                self.check_task(path, &view, &question, task)?;
+                let subject =
+                    Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
+                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter))?;
+                self.runs.push(run);
+                self.deeper.push(subject.diagnose());
             }
         }
         Ok(())
     }
 
+    /// One run, its pictures written. What a technique cannot do, and what goes wrong with it, is a row of the report.
     fn check_task(
-        &mut self,
-        path: &Path,
+        &self,
         view: &View<'_>,
         question: &Question<'_>,
         task: &Task<'_>,
-    ) -> anyhow::Result<()> {
-        let command = report::command(path, task.light, &task.spec, view.scene.image_size, self.args.jitter);
+        command: String,
+    ) -> anyhow::Result<Run> {
         let asked = report::question(view.scene, task.light, &task.spec, command);
-        let evaluation = match evaluate(view, question, &task.spec, Effort::FULL, self.terminal) {
-            Ok(evaluation) => evaluation,
+        let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
+            Ok((evaluation, jittered(view, question, &task.spec, self.args.jitter, self.terminal)?))
+        });
+        let (evaluation, phases) = match outcome {
+            Ok(outcome) => outcome,
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
-                self.runs.push(Run::unsupported(asked, why.to_string()));
-                return Ok(());
+                return Ok(Run::unsupported(asked, why.to_string()));
             }
             Err(error @ (EvaluateError::Interrupted(_) | EvaluateError::Technique(TechniqueError::Interrupted(_)))) => {
                 return Err(error.into());
             }
-            Err(error) => {
-                self.runs.push(Run::failed(asked, error.to_string()));
-                return Ok(());
-            }
+            Err(error) => return Ok(Run::failed(asked, error.to_string())),
         };
-        let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
         let fractions: Vec<f64> = phases.iter().map(|(_, fraction)| *fraction).collect();
         let mut run = Run::judged(asked, &evaluation.verdict).explained_by(&evaluation.ledger);
         run.cost = Some(evaluation.cost.clone());
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(&fractions);
-        run.budget = budget(task, &evaluation.verdict, run.jitter);
+        run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
         if let Some(out) = &self.out {
             pictures::write_run(out, self.runs.len(), view, question, &run, &evaluation)?;
         }
-        self.runs.push(run);
-        Ok(())
+        Ok(run)
     }
 
-    /// Prints the table and writes the report.
-    fn conclude(&mut self, exporters: &[&Exporter]) -> anyhow::Result<()> {
+    fn verdict_code(&self) -> u8 {
+        if self.runs.iter().any(|run| run.status == Status::Failed) {
+            exit::FAILED
+        } else if self.runs.iter().any(|run| run.budget.is_some_and(|budget| !budget.met)) {
+            exit::BUDGET
+        } else {
+            exit::OK
+        }
+    }
+
+    /// Writes the report, then prints it: a reader that goes away early costs no file. `code` is the exit code.
+    fn report(&mut self, exporters: &[&Exporter], code: u8) -> anyhow::Result<()> {
         if self.runs.is_empty() {
             return Ok(());
         }
         let report = Report::new(report::adapter(self.gpu), std::mem::take(&mut self.runs));
-        say(&table(&report, width()));
-        match &self.out {
-            None => next_step(&report),
-            Some(out) => {
-                for exporter in exporters {
-                    let path = out.write(&format!("report.{}", exporter.extension), &(exporter.write)(&report)?)?;
-                    say(&format!("wrote {}", path.display()));
-                }
-            }
+        let written = self.out.as_ref().map_or_else(|| Ok(Vec::new()), |out| write(&report, exporters, out));
+        let mut text = table(&report, width());
+        for path in written.iter().flatten() {
+            text += &format!("\nwrote {}", path.display());
         }
-        self.runs = report.runs;
-        Ok(())
+        text += &next_step(&report.runs, &self.deeper, self.out.is_none());
+        say_or_end(&text, code);
+        written.map(drop)
     }
 }
 
-/// The tasks of one scene: the techniques typed, or the scene's budgets, or the default set.
-fn tasks<'s>(scene: &'s Scene, typed: &[Spec], args: &CheckArgs) -> anyhow::Result<Vec<Task<'s>>> {
-    let lights = lights(scene, args.light.as_deref())?;
-    let budgets = scene
-        .budgets
-        .iter()
-        .map(|budget| {
-            let spec =
-                Spec::parse(&budget.technique).with_context(|| format!("a [[budget]] of scene '{}'", scene.name))?;
-            Ok((spec, budget))
-        })
-        .collect::<anyhow::Result<Vec<_>>>()?;
-    let defaults = || DEFAULT_SPECS.iter().map(|typed| Spec::parse(typed)).collect::<Result<Vec<_>, _>>();
-    let mut tasks = Vec::new();
-    for light in lights {
-        let binding: Vec<_> =
-            budgets.iter().filter(|(_, budget)| budget.light.as_ref().is_none_or(|name| *name == light.name)).collect();
-        let specs = match (typed, binding.as_slice()) {
-            ([], []) => defaults()?,
-            ([], binding) => binding.iter().map(|(spec, _)| spec.clone()).collect(),
-            (typed, _) => typed.to_vec(),
-        };
-        tasks.extend(specs.into_iter().map(|spec| {
-            let budget = binding.iter().find(|(budgeted, _)| *budgeted == spec).map(|(_, budget)| *budget);
-            Task {
-                light,
-                wrong_fraction: budget.and_then(|budget| budget.wrong_fraction),
-                mean_abs: budget.and_then(|budget| budget.mean_abs),
-                spec,
-            }
-        }));
-    }
-    Ok(tasks)
+fn write(report: &Report, exporters: &[&Exporter], out: &OutFolder) -> anyhow::Result<Vec<PathBuf>> {
+    let file = |exporter: &&Exporter| out.write(&format!("report.{}", exporter.extension), &(exporter.write)(report)?);
+    exporters.iter().map(file).collect()
 }
 
-/// The outcome of a task's limits; with jitter, its share of wrong pixels is the mean over the phases.
-fn budget(task: &Task<'_>, verdict: &crate::verdict::Verdict, jitter: Option<Jitter>) -> Option<BudgetOutcome> {
-    if task.wrong_fraction.is_none() && task.mean_abs.is_none() {
-        return None;
+/// The commands that show and look deeper into the worst run.
+fn next_step(runs: &[Run], deeper: &[String], pictures: bool) -> String {
+    let fraction = |run: &Run| run.error.and_then(|error| error.wrong_fraction);
+    let judged = runs.iter().zip(deeper).filter_map(|(run, deeper)| Some((fraction(run)?, run, deeper)));
+    match judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        None => "\nno pixel was compared in any run".to_owned(),
+        Some((worst, ..)) if worst <= 0.0 => "\nnothing is wrong in any run".to_owned(),
+        Some((_, run, deeper)) => {
+            let pictures = if pictures { format!("\npictures:  {} --out out", run.command) } else { String::new() };
+            format!("{pictures}\nnext step: {deeper}")
+        }
     }
-    let mut judged = verdict.clone();
-    if let Some(jitter) = jitter {
-        judged.error.wrong_fraction = Some(jitter.wrong_fraction.mean);
-    }
-    Some(BudgetOutcome::of(&judged, task.wrong_fraction, task.mean_abs))
 }
 
 /// report.json always, and the formats asked for.
@@ -191,28 +163,4 @@ fn exporters(names: &[String]) -> anyhow::Result<Vec<&'static Exporter>> {
         }
     }
     Ok(chosen)
-}
-
-fn verdict_code(runs: &[Run]) -> u8 {
-    use crate::report::model::Status;
-    if runs.iter().any(|run| run.status == Status::Failed) {
-        exit::FAILED
-    } else if runs.iter().any(|run| run.budget.as_ref().is_some_and(|budget| !budget.met)) {
-        exit::BUDGET
-    } else {
-        exit::OK
-    }
-}
-
-/// The command that looks deeper into the worst run.
-fn next_step(report: &Report) {
-    let fraction = |run: &Run| run.error.and_then(|error| error.wrong_fraction).unwrap_or(0.0);
-    let worst = report.runs.iter().max_by(|a, b| fraction(a).total_cmp(&fraction(b)));
-    match worst.filter(|run| fraction(run) > 0.0) {
-        Some(run) => {
-            say(&format!("pictures:  {} --out out", run.command));
-            say(&format!("next step: {}", run.command.replacen("gnomon check", "gnomon diagnose", 1)));
-        }
-        None => complain("nothing is wrong in any run"),
-    }
 }

@@ -2,9 +2,12 @@
 
 use super::args::SceneArgs;
 use super::terminal::complain;
+use crate::evaluate::View;
 use crate::gpu::Gpu;
+use crate::receiver::PixelClass;
 use crate::scene::{self, Light, LoadOptions, Scene};
 use crate::suggest::hint;
+use crate::technique::{Prepared, Spec};
 use anyhow::{Context, bail};
 use glam::UVec2;
 use std::path::Path;
@@ -13,7 +16,7 @@ use std::path::Path;
 pub(super) fn load(path: &Path, size: Option<UVec2>) -> anyhow::Result<Scene> {
     let scene = scene::load(path, &LoadOptions { size, ..LoadOptions::default() })?;
     for warning in &scene.warnings {
-        complain(&format!("warning: {warning}"));
+        complain(&format!("warning: scene '{}': {warning}", scene.name));
     }
     Ok(scene)
 }
@@ -34,6 +37,17 @@ pub(super) fn lights<'s>(scene: &'s Scene, name: Option<&str>) -> anyhow::Result
             bail!("scene '{}' has no light '{name}'{hint}; it has {}", scene.name, names.join(", "))
         }
     }
+}
+
+/// A technique for a command that cannot go on without it.
+pub(super) fn prepare<'j>(
+    spec: &Spec,
+    view: &'j View<'_>,
+    light: &'j Light,
+    classes: &'j [PixelClass],
+) -> anyhow::Result<Box<dyn Prepared + 'j>> {
+    let prepared = spec.technique().prepare(spec, view.job(light, classes));
+    prepared.with_context(|| format!("'{}' cannot answer for light '{}'", spec.short(), light.name))
 }
 
 /// The one light of a command that writes one file.

@@ -1,13 +1,12 @@
 //! `gnomon diagnose`: what is wrong, why, and what each fix really does.
 
 use super::args::DiagnoseArgs;
+use super::command::Subject;
 use super::context::{lights, load, open_gpu};
 use super::exit;
-use super::report::{command, quoted};
 use super::terminal::{Terminal, say};
 use crate::cause::Cause;
 use crate::evaluate::{BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias};
-use crate::scene::Light;
 use crate::technique::{Spec, TechniqueError};
 
 /// The biases compared when self-shadowing or detached contacts are present: parameter and value.
@@ -24,22 +23,25 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
     for light in lights {
+        let subject = |spec| Subject { scene: &args.scene.scene, light: &light.name, spec, size: scene.image_size };
         let question = view.ask(light, terminal)?;
         say(&format!("{}, light '{}', {}", scene.name, light.name, spec.short()));
         let evaluation = match evaluate(&view, &question, &spec, EFFORT, terminal) {
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
-                say(&format!("  {why}\n"));
+                say(&format!("  not applicable: {why}\n"));
                 continue;
             }
             other => other?,
         };
+        let predicted = evaluation.prepared.facts();
+        predicted.iter().for_each(|(label, value)| say(&format!("  {label:<18} {value}")));
         let before = Outcome::of(&evaluation);
         let asked = evaluation.verdict.pixels.asked;
         say(&format!("  {} of {asked} asked pixels are wrong\n", before.wrong));
         let diagnoses = diagnose(&view, &question, &spec, &evaluation, terminal)?;
         terminal.finish();
         for diagnosis in &diagnoses {
-            say(&described(args, light, &spec, diagnosis, &before, scene.image_size.x));
+            say(&described(subject(&spec), diagnosis, &before));
         }
         let is_bias = |d: &Diagnosis| matches!(d.cause, Cause::Acne | Cause::Curvature | Cause::PeterPanning);
         if diagnoses.iter().any(is_bias) {
@@ -56,21 +58,15 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
                 "best fix tried: {} leaves {} wrong pixels\nnext step: {}\n",
                 fix.short(),
                 outcome.wrong,
-                command(&args.scene.scene, light, fix, scene.image_size, 0)
+                subject(fix).check(0)
             ));
         }
     }
     Ok(exit::OK)
 }
 
-fn described(
-    args: &DiagnoseArgs,
-    light: &Light,
-    spec: &Spec,
-    diagnosis: &Diagnosis,
-    before: &Outcome,
-    width: u32,
-) -> String {
+fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome) -> String {
+    let width = subject.size.x;
     let pixels: Vec<String> = diagnosis.worst.iter().map(|p| format!("{},{}", p % width, p / width)).collect();
     let mut text = format!(
         "{}: {} px, {:.1} % of the wrong ones, sum {:+.1}\n  {}\n  e.g. at {}\n",
@@ -86,23 +82,12 @@ fn described(
             Ok(after) => effect(diagnosis.cause, before, after),
             Err(why) => why.clone(),
         };
-        text += &format!("  tried {}: {effect}\n", changed(spec, fix));
+        text += &format!("  tried {}: {effect}\n", subject.spec.changes_to(fix));
     }
-    if let Some(pixel) = pixels.first() {
-        text += &format!(
-            "  look closer: gnomon explain {} -t {} --light {} --pixel {pixel}\n",
-            quoted(&args.scene.scene.to_string_lossy()),
-            quoted(&spec.short()),
-            quoted(&light.name)
-        );
+    if let Some(pixel) = diagnosis.worst.first() {
+        text += &format!("  look closer: {}\n", subject.explain(*pixel));
     }
     text
-}
-
-/// "bias none → closed-form": the parameters in which two specifications differ.
-fn changed(from: &Spec, to: &Spec) -> String {
-    let changes = from.values().iter().zip(to.values()).filter(|(a, b)| a != b);
-    changes.map(|((name, old), (_, new))| format!("{name} {old} → {new}")).collect::<Vec<_>>().join(", ")
 }
 
 /// "acne 3120 → 0 px, peter-panning 0 → 44 px, wrong 3200 → 124 px, GPU time +2 %".

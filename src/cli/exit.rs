@@ -19,15 +19,29 @@ pub(super) const FAILED: u8 = 4;
 /// The user interrupted.
 pub(super) const INTERRUPTED: u8 = 130;
 
-/// What `--help` says about exit codes.
-pub(super) const HELP: &str = "Exit codes: 0 done, all budgets met; 1 a budget exceeded; 2 bad input or usage; \
+/// What `--help` says at its end.
+pub(super) const HELP: &str = "Start with:\n  gnomon list scenes\n  gnomon check scenes/torus\n\n\
+                               GNOMON_ADAPTER chooses the graphics adapter, by its name or number in 'gnomon doctor'.\n\n\
+                               Exit codes: 0 done, all budgets met; 1 a budget exceeded; 2 bad input or usage; \
                                3 no usable adapter or oracle; 4 a run failed; 130 interrupted.";
 
 /// Prints an error and says which code it is.
 pub(super) fn of_error(error: &anyhow::Error) -> ExitCode {
-    let code = code_of(error);
-    super::terminal::complain(&format!("error: {error:#}"));
-    ExitCode::from(code)
+    super::terminal::complain(&format!("error: {}", message(error)));
+    ExitCode::from(code_of(error))
+}
+
+/// The error and its causes, from the outside in. Some errors repeat their cause in their own text: what is said already
+/// is not said again.
+pub(super) fn message(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !text.contains(&cause) {
+            let joint = if text.is_empty() { "" } else { ": " };
+            text = format!("{text}{joint}{cause}");
+        }
+    }
+    text
 }
 
 /// clap's own message; `--help` and `--version` are no errors.
@@ -37,7 +51,8 @@ pub(super) fn of_usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(if error.use_stderr() { USAGE } else { OK })
 }
 
-fn code_of(error: &anyhow::Error) -> u8 {
+/// The code of an error, by the first of its causes that has one.
+pub(super) fn code_of(error: &anyhow::Error) -> u8 {
     let gpu = |error: &GpuError| match error {
         GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => NO_ADAPTER,
         GpuError::TooLarge { .. } => USAGE,
@@ -67,4 +82,29 @@ fn code_of(error: &anyhow::Error) -> u8 {
         }
     }
     USAGE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cause_is_said_once() {
+        let io = || std::io::Error::other("disk full");
+        let repeating = anyhow::Error::from(io()).context("x.png: disk full").context("writing");
+        assert_eq!(message(&repeating), "writing: x.png: disk full");
+        assert_eq!(message(&anyhow::Error::from(io()).context("x.png")), "x.png: disk full");
+    }
+
+    #[test]
+    fn the_code_is_that_of_the_cause_whatever_is_said_about_it() {
+        let wrapped = |error: EvaluateError| anyhow::Error::from(error).context("scene 'a'");
+        assert_eq!(code_of(&wrapped(Interrupted.into())), INTERRUPTED);
+        assert_eq!(code_of(&wrapped(TechniqueError::Interrupted(Interrupted).into())), INTERRUPTED);
+        let large = GpuError::TooLarge { what: "x".to_owned(), asked: 2, limit: 1 };
+        assert_eq!(code_of(&anyhow::Error::from(large).context("scene 'a'")), USAGE);
+        let missing = GpuError::NoAdapter { why: String::new(), found: String::new() };
+        assert_eq!(code_of(&missing.into()), NO_ADAPTER);
+        assert_eq!(code_of(&anyhow::anyhow!("anything else")), USAGE);
+    }
 }

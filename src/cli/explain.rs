@@ -1,9 +1,9 @@
 //! `gnomon explain`: everything about one pixel.
 
 use super::args::ExplainArgs;
-use super::context::{load, only_light, open_gpu};
+use super::command::Subject;
+use super::context::{load, only_light, open_gpu, prepare};
 use super::exit;
-use super::report::quoted;
 use super::terminal::{Terminal, say};
 use crate::evaluate::View;
 use crate::mask::Truth;
@@ -27,6 +27,8 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let index = args.pixel.y * size.x + args.pixel.x;
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
+    let classes = view.receivers.classify(&scene, light);
+    let prepared = prepare(&spec, &view, light, &classes)?;
     say(&format!(
         "pixel {},{} of {}, light '{}', {}",
         args.pixel.x,
@@ -39,7 +41,6 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
         say("  background: no geometry at this pixel's centre");
         return Ok(exit::OK);
     };
-    let classes = view.receivers.classify(&scene, light);
     say(&surface(&scene, &receiver));
     if terminator(&scene, &view.receivers, light)[index as usize] {
         say(
@@ -67,7 +68,6 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
         say("  undecided: the verdict changes when the receiver moves by its own rounding error");
         return Ok(exit::OK);
     };
-    let prepared = spec.technique().prepare(&spec, view.job(light, &classes))?;
     let mask = prepared.run()?.mask;
     let answer = mask.pixels[index as usize].map_or(f32::NAN, crate::mask::Visibility::get);
     say(&format!("  truth            {}\n  technique        {answer}", exact.get()));
@@ -91,12 +91,13 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     match ledger.cause_of(index) {
         None => say("verdict: right"),
         Some(cause) => {
-            say(&format!("verdict: {}: {}", cause.name(), cause.meaning()));
+            let error = f64::from(answer) - f64::from(exact.get());
+            let named_wrong = if ledger.wrong.is_empty() { "off, but not wrong," } else { "wrong" };
+            say(&format!("verdict: {named_wrong} by {error:+.4}: {}: {}", cause.name(), cause.meaning()));
             if let Some(fix) = spec.technique().remedies(&spec, cause).first() {
-                let scene = quoted(&args.scene.scene.to_string_lossy());
-                let light = quoted(&light.name);
-                say(&format!("knob: {}", fix.short()));
-                say(&format!("next step: gnomon diagnose {scene} -t {} --light {light}", quoted(&spec.short())));
+                let subject = Subject { scene: &args.scene.scene, light: &light.name, spec: &spec, size };
+                say(&format!("knob: {} ({})", spec.changes_to(fix), fix.short()));
+                say(&format!("next step: {}", subject.diagnose()));
             }
         }
     }

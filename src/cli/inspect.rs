@@ -1,20 +1,20 @@
 //! `gnomon inspect`: what a scene requires, which techniques apply, and what to expect of one before it is measured.
 
 use super::args::InspectArgs;
+use super::columns::{columns, text};
+use super::command::{as_typed, quoted};
 use super::context::{lights, load, open_gpu};
 use super::exit;
-use super::report::quoted;
-use super::terminal::say;
+use super::terminal::{Terminal, say};
 use crate::evaluate::View;
 use crate::gpu::Gpu;
 use crate::inspect::{DepthRange, MeshReport, SceneReport, inspect};
 use crate::receiver::PixelClass;
-use crate::scene::{Light, Scene};
+use crate::scene::{Far, Light, Scene};
 use crate::shade::terminator;
 use crate::technique::{Spec, registry};
-use comfy_table::{ContentArrangement, Table, TableStyle};
 
-pub(super) fn run(args: &InspectArgs) -> anyhow::Result<u8> {
+pub(super) fn run(args: &InspectArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let typed = args.technique.as_deref().map(Spec::parse).transpose()?;
     let scene = load(&args.scene.scene, args.scene.size)?;
     let lights = lights(&scene, args.scene.light.as_deref())?;
@@ -25,6 +25,7 @@ pub(super) fn run(args: &InspectArgs) -> anyhow::Result<u8> {
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
     for light in lights {
+        terminal.proceed()?;
         say(&light_facts(&view, light, &report));
         match &typed {
             None => say(&applicability(&gpu, &scene, light)?),
@@ -32,7 +33,7 @@ pub(super) fn run(args: &InspectArgs) -> anyhow::Result<u8> {
         }
     }
     let technique = typed.map_or_else(String::new, |spec| format!(" -t {}", quoted(&spec.short())));
-    say(&format!("next step: gnomon check {}{technique}", quoted(&args.scene.scene.to_string_lossy())));
+    say(&format!("next step: gnomon check {}{technique}", as_typed(&args.scene)));
     Ok(exit::OK)
 }
 
@@ -40,8 +41,7 @@ pub(super) fn run(args: &InspectArgs) -> anyhow::Result<u8> {
 fn meshes(reports: &[MeshReport]) -> String {
     /// More meshes than this are summed up in one row.
     const LISTED: usize = 24;
-    let mut table = Table::new();
-    table.load_style(TableStyle::new()).set_content_arrangement(ContentArrangement::Dynamic);
+    let mut table = columns();
     table.set_header([
         "mesh",
         "triangles",
@@ -72,7 +72,7 @@ fn meshes(reports: &[MeshReport]) -> String {
     let rest = reports.len().saturating_sub(LISTED);
     let open = reports.iter().filter(|mesh| mesh.casts && !mesh.is_closed).count();
     let more = if rest > 0 { format!("\n… and {rest} more meshes") } else { String::new() };
-    format!("{table}{more}\n{} meshes, {open} of the casters open\n", reports.len())
+    format!("{}{more}\n{} meshes, {open} of the casters open\n", text(table, ""), reports.len())
 }
 
 fn range(range: Option<DepthRange>) -> String {
@@ -80,13 +80,16 @@ fn range(range: Option<DepthRange>) -> String {
 }
 
 fn geometry(scene: &Scene, report: &SceneReport) -> String {
+    let far = match scene.camera.far {
+        Far::Infinite => "infinite".to_owned(),
+        Far::Finite(far_m) => format!("{far_m:.6} m"),
+    };
     format!(
-        "extent               {:.4} m\ncamera sees          {}\ncamera near, far     {:.6} m, {:?}\n\
+        "extent               {:.4} m\ncamera sees          {}\ncamera near, far     {:.6} m, {far}\n\
          recommended          {}\nreceiver planes      {}\n",
         report.extent_m,
         range(report.view_depth),
         scene.camera.near_m,
-        scene.camera.far,
         range(report.recommended_view),
         report.planes
     )
@@ -122,7 +125,7 @@ fn applicability(gpu: &Gpu, scene: &Scene, light: &Light) -> anyhow::Result<Stri
         let spec = Spec::parse(technique.id())?;
         let verdict = match technique.supports(&spec, scene, light, gpu) {
             Ok(()) => "applies".to_owned(),
-            Err(why) => why.to_string(),
+            Err(why) => format!("not applicable: {why}"),
         };
         lines.push(format!("  {:<18} {verdict}", technique.id()));
     }
@@ -134,7 +137,7 @@ fn prediction(view: &View<'_>, light: &Light, spec: &Spec) -> anyhow::Result<Str
     let classes = view.receivers.classify(view.scene, light);
     let prepared = match spec.technique().prepare(spec, view.job(light, &classes)) {
         Ok(prepared) => prepared,
-        Err(crate::technique::TechniqueError::Unsupported(why)) => return Ok(format!("  {why}\n")),
+        Err(crate::technique::TechniqueError::Unsupported(why)) => return Ok(format!("  not applicable: {why}\n")),
         Err(error) => return Err(error.into()),
     };
     let mut lines: Vec<String> =

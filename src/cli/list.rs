@@ -1,12 +1,12 @@
 //! `gnomon list`: the scenes of a folder, the techniques and their parameters.
 
 use super::args::{ListArgs, Listed};
+use super::columns::{columns, text};
 use super::exit;
 use super::terminal::{complain, say};
 use crate::scene::{self, LoadOptions};
 use crate::technique::{Technique, registry};
-use anyhow::Context;
-use comfy_table::{ContentArrangement, Table, TableStyle};
+use anyhow::{Context, bail};
 
 pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
     match args.what {
@@ -18,7 +18,10 @@ pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
             let mut paths: Vec<_> = entries.filter_map(Result::ok).map(|entry| entry.path()).collect();
             paths.retain(|path| path.join("scene.toml").is_file());
             paths.sort();
-            let mut table = plain_table();
+            if paths.is_empty() {
+                bail!("{}: no folder in it holds a scene.toml; name another with --folder", folder.display());
+            }
+            let mut table = columns();
             for path in paths {
                 match scene::load(&path, &LoadOptions::default()) {
                     Ok(scene) => {
@@ -26,32 +29,27 @@ pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
                         let triangles = format!("{} triangles", scene.triangles.len());
                         table.add_row([path.display().to_string(), triangles, lights.join(", "), scene.about]);
                     }
-                    Err(error) => complain(&format!("warning: {error}")),
+                    Err(error) => complain(&format!("warning: {}", exit::message(&error.into()))),
                 }
             }
-            say(&table.to_string());
+            say(&text(table, ""));
         }
     }
     Ok(exit::OK)
 }
 
-fn plain_table() -> Table {
-    let mut table = Table::new();
-    table.load_style(TableStyle::new()).set_content_arrangement(ContentArrangement::Dynamic);
-    table
-}
-
 fn described(technique: &dyn Technique) -> String {
-    let mut table = plain_table();
+    let mut table = columns();
     for param in technique.params() {
         let name =
             if param.unit.is_empty() { param.name.to_owned() } else { format!("{} [{}]", param.name, param.unit) };
         table.add_row([name, param.default.to_string(), param.range(), param.help.to_owned()]);
     }
     format!(
-        "{}: {}\n  {}\n  parameter, default, values:\n{table}\n",
+        "{}: {}\n  {}\n  parameter, default, values:\n{}\n",
         technique.id(),
         technique.about(),
-        technique.citation()
+        technique.citation(),
+        text(table, "  ")
     )
 }

@@ -1,7 +1,7 @@
 //! `gnomon truth` and `gnomon mask`: one light's visibility as an image that other programs can read.
 
 use super::args::{MaskArgs, TruthArgs};
-use super::context::{load, only_light, open_gpu};
+use super::context::{load, only_light, open_gpu, prepare};
 use super::exit;
 use super::output::{ImageFormat, OutFile};
 use super::terminal::{Terminal, say};
@@ -21,7 +21,7 @@ pub(super) fn truth(args: &TruthArgs, terminal: &Terminal) -> anyhow::Result<u8>
     Ok(exit::OK)
 }
 
-pub(super) fn mask(args: &MaskArgs) -> anyhow::Result<u8> {
+pub(super) fn mask(args: &MaskArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let spec = Spec::parse(&args.technique)?;
     let scene = load(&args.scene.scene, args.scene.size)?;
     let light = only_light(&scene, &args.scene)?;
@@ -29,7 +29,8 @@ pub(super) fn mask(args: &MaskArgs) -> anyhow::Result<u8> {
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
     let classes = view.receivers.classify(&scene, light);
-    let mask = spec.technique().prepare(&spec, view.job(light, &classes))?.run()?.mask;
+    let mask = prepare(&spec, &view, light, &classes)?.run()?.mask;
+    terminal.proceed()?;
     out.write(&encoded(&MaskImage::from(&mask), out.format)?)?;
     say(&format!("wrote {}", args.output.display()));
     Ok(exit::OK)

@@ -1,8 +1,10 @@
 //! The command line: the only place that reads and writes files and talks to the terminal, and the only one that uses
-//! `anyhow`. Every command prints what it found and the command for the next step.
+//! `anyhow`. A command that finds something prints the command for the next step, too.
 
 mod args;
 mod check;
+mod columns;
+mod command;
 mod context;
 mod diagnose;
 mod doctor;
@@ -17,6 +19,7 @@ mod pictures;
 mod render;
 mod report;
 mod scaffold;
+mod tasks;
 mod terminal;
 
 use args::{Cli, Command};
@@ -39,9 +42,9 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(&args, &terminal),
         Command::Render(args) => render::run(&args, &terminal),
         Command::Truth(args) => masks::truth(&args, &terminal),
-        Command::Mask(args) => masks::mask(&args),
+        Command::Mask(args) => masks::mask(&args, &terminal),
         Command::Judge(args) => judge::run(&args, &terminal),
-        Command::Inspect(args) => inspect::run(&args),
+        Command::Inspect(args) => inspect::run(&args, &terminal),
         Command::Explain(args) => explain::run(&args, &terminal),
         Command::Diagnose(args) => diagnose::run(&args, &terminal),
         Command::Scaffold(args) => scaffold::run(&args),

@@ -13,11 +13,12 @@ pub(super) struct OutFolder {
 }
 
 impl OutFolder {
-    /// Makes the folder and proves that files can be written there.
+    /// Proves that files can be written there. A folder that does not exist is made with the first file, so that
+    /// a command that fails before leaves nothing behind.
     pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
-        let hint = || format!("{}: cannot write there; name another folder with --out", path.display());
-        std::fs::create_dir_all(path).with_context(hint)?;
-        NamedTempFile::new_in(path).with_context(hint)?;
+        let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."));
+        temporary_file_in(existing)
+            .with_context(|| format!("{}: files cannot be written there; name another place", path.display()))?;
         Ok(Self { path: path.to_owned() })
     }
 
@@ -50,11 +51,10 @@ impl OutFile {
     /// Checks extension and folder.
     pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         let format = image_format(path)?;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        OutFolder::open(folder)?;
         if path.is_dir() {
             bail!("{}: is a folder; name a file", path.display());
         }
+        OutFolder::open(folder_of(path))?;
         Ok(Self { path: path.to_owned(), format })
     }
 
@@ -74,17 +74,27 @@ pub(super) fn image_format(path: &Path) -> anyhow::Result<ImageFormat> {
 }
 
 fn write_atomically(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let write = || -> std::io::Result<()> {
-        let mut file = NamedTempFile::new_in(folder)?;
-        file.write_all(bytes)?;
+        std::fs::create_dir_all(folder)?;
+        let mut file = temporary_file_in(folder)?;
+        file.as_file_mut().write_all(bytes)?;
         file.as_file().sync_data()?;
         // A temporary file is private; a result is as readable as any new file.
         make_readable(file.as_file())?;
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };
-    write().with_context(|| format!("{}: could not be written; nothing was left behind", path.display()))
+    write().with_context(|| format!("{}: could not be written; it is as it was before", path.display()))
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Its error does not tell the temporary name, which means nothing to anybody.
+fn temporary_file_in(folder: &Path) -> std::io::Result<NamedTempFile> {
+    NamedTempFile::new_in(folder).map_err(|error| error.kind().into())
 }
 
 #[cfg(unix)]

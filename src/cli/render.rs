@@ -1,7 +1,7 @@
 //! `gnomon render`: the scene as a picture, lit with a technique's shadows or the exact ones.
 
 use super::args::RenderArgs;
-use super::context::{lights, load, open_gpu};
+use super::context::{lights, load, open_gpu, prepare};
 use super::exit;
 use super::output::{ImageFormat, OutFile};
 use super::terminal::{Terminal, say};
@@ -24,6 +24,7 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
         .map(|light| Ok((light, shadows(&view, light, spec.as_ref(), terminal)?)))
         .collect::<anyhow::Result<Vec<(&Light, Mask)>>>()?;
     let lit: Vec<(&Light, &Mask)> = masks.iter().map(|(light, mask)| (*light, mask)).collect();
+    terminal.proceed()?;
     let picture = shade(&scene, &view.receivers, &lit);
     let bytes = match out.format {
         ImageFormat::Png => picture.to_png(),
@@ -38,7 +39,10 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
 fn shadows(view: &View<'_>, light: &Light, spec: Option<&Spec>, terminal: &Terminal) -> anyhow::Result<Mask> {
     let classes = view.receivers.classify(view.scene, light);
     let mut mask = match spec {
-        Some(spec) => spec.technique().prepare(spec, view.job(light, &classes))?.run()?.mask,
+        Some(spec) => {
+            terminal.proceed()?;
+            prepare(spec, view, light, &classes)?.run()?.mask
+        }
         None => {
             let truth = view.ask(light, terminal)?.truth.mask;
             let visibility = |truth: Truth| match truth {

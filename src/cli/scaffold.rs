@@ -1,9 +1,9 @@
 //! `gnomon scaffold`: the scene file that gnomon makes around a bare OBJ, written beside it for editing.
 
 use super::args::ScaffoldArgs;
+use super::command::quoted_path;
 use super::exit;
 use super::output::OutFolder;
-use super::report::quoted;
 use super::terminal::say;
 use crate::scene::scene_file_for_obj;
 use anyhow::bail;
@@ -20,6 +20,6 @@ pub(super) fn run(args: &ScaffoldArgs) -> anyhow::Result<u8> {
         bail!("{}: there is one already; move it away first", target.display());
     }
     OutFolder::open(folder)?.write(SCENE_FILE, text.as_bytes())?;
-    say(&format!("wrote {}\nnext step: gnomon check {}", target.display(), quoted(&folder.to_string_lossy())));
+    say(&format!("wrote {}\nnext step: gnomon check {}", target.display(), quoted_path(folder)));
     Ok(exit::OK)
 }

@@ -1,6 +1,7 @@
 //! The terminal: text out, progress bars for what takes longer than two seconds, Ctrl-C.
 
-use crate::watch::Watch;
+use super::exit;
+use crate::watch::{Interrupted, Watch};
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{ErrorKind, Write};
@@ -30,12 +31,18 @@ impl Terminal {
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(super::exit::INTERRUPTED.into());
+                std::process::exit(exit::INTERRUPTED.into());
             }
             complain("interrupted: finishing what is begun; once more ends at once");
         })
         .context("catching Ctrl-C")?;
+        survive_file_size_limit()?;
         Ok(Self { interrupted, work: Mutex::new(None) })
+    }
+
+    /// An error once the user asked to stop: for work that does not watch by itself.
+    pub(super) fn proceed(&self) -> Result<(), Interrupted> {
+        if self.interrupted() { Err(Interrupted) } else { Ok(()) }
     }
 
     /// Takes the bar away.
@@ -58,13 +65,19 @@ impl Watch for Terminal {
         let mut guard = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(work) = guard.as_mut() else { return };
         work.bar.inc(units);
+        if Some(work.bar.position()) >= work.bar.length() {
+            // What is done leaves the screen to the results.
+            work.bar.finish_and_clear();
+            *guard = None;
+            return;
+        }
         if work.bar.is_hidden() && work.began.elapsed() > PATIENCE {
             let (done, total) = (work.bar.position(), work.bar.length().unwrap_or(0));
             work.bar = ProgressBar::new(total).with_position(done).with_elapsed(work.began.elapsed());
-            work.bar.set_message(work.what.clone());
             if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta} left") {
                 work.bar.set_style(style);
             }
+            work.bar.set_message(work.what.clone());
         }
     }
 
@@ -73,12 +86,34 @@ impl Watch for Terminal {
     }
 }
 
+/// Beyond a limit on file sizes (`ulimit -f`) the system ends a process unless it handles a signal; handled, the write
+/// fails with an error like any other, which can be told and cleaned up after.
+#[cfg(unix)]
+fn survive_file_size_limit() -> anyhow::Result<()> {
+    let noted = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noted).context("catching the file size limit")?;
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn survive_file_size_limit() -> anyhow::Result<()> {
+    Ok(())
+}
+
 /// Prints a result. A reader that has gone away (`gnomon list | head`) ends the process quietly.
 pub(super) fn say(text: &str) {
-    if let Err(error) = writeln!(std::io::stdout().lock(), "{text}")
-        && error.kind() == ErrorKind::BrokenPipe
-    {
-        std::process::exit(super::exit::OK.into());
+    say_or_end(text, exit::OK);
+}
+
+/// Prints the last result of a command; if its reader has gone away, the process ends quietly with `code`.
+pub(super) fn say_or_end(text: &str, code: u8) {
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Ok(()) => {}
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(code.into()),
+        Err(error) => {
+            complain(&format!("error: standard output cannot be written: {error}"));
+            std::process::exit(exit::USAGE.into());
+        }
     }
 }
 

@@ -63,6 +63,11 @@ impl Geometry {
         self.corners.as_ref().map_or(0, Buffer::size)
     }
 
+    /// Three corners per triangle, laid out as [`CORNER_LAYOUT`]; `None` for a scene without triangles.
+    pub(crate) fn corners(&self) -> Option<&Buffer> {
+        self.corners.as_ref()
+    }
+
     /// Draws every triangle.
     pub(crate) fn draw_all(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.draw_triangles(pass, &self.every_range);

@@ -6,6 +6,8 @@ mod context;
 mod error;
 mod gbuffer;
 mod geometry;
+#[cfg(test)]
+pub(crate) mod layout;
 mod readback;
 mod recorder;
 pub mod shader;

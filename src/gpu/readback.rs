@@ -4,7 +4,7 @@ use super::{Gpu, GpuError};
 use bytemuck::Pod;
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, COPY_BYTES_PER_ROW_ALIGNMENT, Extent3d, MapMode, PollType,
-    TexelCopyBufferInfo, TexelCopyBufferLayout, Texture,
+    TexelCopyBufferInfo, TexelCopyBufferLayout, TexelCopyTextureInfo, Texture, TextureAspect,
 };
 
 impl Gpu {
@@ -22,6 +22,15 @@ impl Gpu {
 
     /// A colour texture (usage `COPY_SRC`) of texels the size of `T`, row by row without padding.
     pub(crate) fn read_texture<T: Pod>(&self, texture: &Texture, during: &str) -> Result<Vec<T>, GpuError> {
+        self.read_aspect(texture, TextureAspect::All, during)
+    }
+
+    /// The stencil of a texture (usage `COPY_SRC`), row by row without padding.
+    pub(crate) fn read_stencil(&self, texture: &Texture, during: &str) -> Result<Vec<u8>, GpuError> {
+        self.read_aspect(texture, TextureAspect::StencilOnly, during)
+    }
+
+    fn read_aspect<T: Pod>(&self, texture: &Texture, aspect: TextureAspect, during: &str) -> Result<Vec<T>, GpuError> {
         let (width, height) = (texture.width(), texture.height());
         let row_bytes = width * size_of::<T>() as u32;
         let padded_row_bytes = row_bytes.next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -29,7 +38,7 @@ impl Gpu {
             let staging = self.staging(u64::from(padded_row_bytes) * u64::from(height));
             let mut encoder = self.device.create_command_encoder(&Default::default());
             encoder.copy_texture_to_buffer(
-                texture.as_image_copy(),
+                TexelCopyTextureInfo { aspect, ..texture.as_image_copy() },
                 TexelCopyBufferInfo {
                     buffer: &staging,
                     layout: TexelCopyBufferLayout {

@@ -3,16 +3,22 @@
 
 /// Vertices of the faces, and how many connected pieces the faces form. Indices are below `vertex_count`.
 pub(super) fn vertices_and_components(faces: &[[u32; 3]], vertex_count: usize) -> (usize, usize) {
-    let mut parent: Vec<u32> = (0..vertex_count as u32).collect();
     let mut is_used = vec![false; vertex_count];
+    faces.iter().flatten().for_each(|&v| is_used[v as usize] = true);
+    let used = (0..vertex_count).filter(|&v| is_used[v]);
+    let piece = pieces(faces, vertex_count);
+    let roots = used.clone().filter(|&v| piece[v] as usize == v);
+    (used.count(), roots.count())
+}
+
+/// Per vertex the lowest vertex of the piece that it belongs to.
+pub(super) fn pieces(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..vertex_count as u32).collect();
     for &[a, b, c] in faces {
-        [a, b, c].iter().for_each(|&v| is_used[v as usize] = true);
         join(&mut parent, a, b);
         join(&mut parent, b, c);
     }
-    let used = (0..vertex_count).filter(|&v| is_used[v]);
-    let roots = used.clone().filter(|&v| parent[v] as usize == v);
-    (used.count(), roots.count())
+    (0..vertex_count as u32).map(|v| root(&mut parent, v)).collect()
 }
 
 fn join(parent: &mut [u32], a: u32, b: u32) {

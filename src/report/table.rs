@@ -4,7 +4,7 @@
 //! what the figures leave. Every block has the same column widths.
 
 use super::Report;
-use super::format::{grouped, printable, wrapped};
+use super::format::{grouped, percent, printable, wrapped};
 use super::model::Run;
 use super::summary::{BUDGET_NOTE, Summary, software_note};
 use comfy_table::{
@@ -40,6 +40,10 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
+        for line in runs.iter().filter_map(jitter) {
+            wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
+        }
+        text.push('\n');
         start = end;
     }
     let notes = [software_note(&report.adapter), Summary::any_doubtful_budget(report).then(|| BUDGET_NOTE.to_owned())];
@@ -62,8 +66,16 @@ fn block(runs: &[Run], rows: &[[String; 6]], widths: [u16; 6]) -> String {
         let why = printable(run.why.as_deref().unwrap_or_default());
         text.push_str(&format!("{}  {}: {why}\n", printable(&run.typed), Summary::verdictless(run)));
     }
-    text.push('\n');
     text
+}
+
+/// What shifting the texel grid of a run does to its share of wrong pixels.
+fn jitter(run: &Run) -> Option<String> {
+    let jitter = run.jitter?;
+    let [mean, min, max] =
+        [jitter.wrong_fraction.mean, jitter.wrong_fraction.min, jitter.wrong_fraction.max].map(percent);
+    let (typed, phases) = (printable(&run.typed), jitter.phases);
+    Some(format!("{typed}  over {phases} texel phases: {mean} wrong on average, {min} to {max}"))
 }
 
 fn heading(runs: &[Run]) -> String {
@@ -147,7 +159,14 @@ mod tests {
     #[test]
     fn it_shows_every_run_and_says_why_some_have_no_verdict() {
         let text = table(&report(), 100);
-        for shown in ["kitchen / lamp   64 × 48, 7 asked, 1 undecided", "42.9 %", "acne 67 %", "1.25*", "EXCEEDED"] {
+        for shown in [
+            "kitchen / lamp   64 × 48, 7 asked, 1 undecided",
+            "42.9 %",
+            "acne 67 %",
+            "1.25*",
+            "EXCEEDED",
+            "over 2 texel phases: 37.5 % wrong",
+        ] {
             assert!(text.contains(shown), "{shown} in\n{text}");
         }
         assert!(text.contains("volume:count=z-pass  not applicable: open mesh, 12 edges"), "{text}");

@@ -14,6 +14,7 @@ pub mod projective_texture;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
+pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
 pub use receiver_buffer::ReceiverBuffer;
@@ -22,6 +23,7 @@ pub use unsupported::Unsupported;
 
 use crate::cast::Casters;
 use crate::cause::{Cause, Replay};
+use crate::gpu::shader::Wgsl;
 use crate::gpu::{Geometry, Gpu, GpuError, PassRecord};
 use crate::inspect::Adjacency;
 use crate::mask::Mask;
@@ -34,7 +36,14 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map, &planar::Planar, &projective_texture::ProjectiveTexture]
+    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture]
+}
+
+/// Every shader module that any technique can build, as label and files.
+#[must_use]
+pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
+    [map::shader_modules(), volume::shader_modules(), planar::shader_modules(), projective_texture::shader_modules()]
+        .concat()
 }
 
 /// A shadow technique.

@@ -113,7 +113,7 @@ impl Param {
             Kind::Real { min, max, auto } => {
                 typed.parse().ok().filter(|value| (*min..=*max).contains(value)).map(Value::Real).ok_or_else(|| {
                     let or_auto = if *auto { " or auto" } else { "" };
-                    format!("takes a number from {min} to {max}{or_auto}, not '{typed}'")
+                    format!("takes a number from {} to {}{or_auto}, not '{typed}'", spelled(*min), spelled(*max))
                 })
             }
         }
@@ -125,7 +125,9 @@ impl Param {
         match &self.kind {
             Kind::Choice(choices) => choices.iter().map(Choice::spelling).collect::<Vec<_>>().join(" | "),
             Kind::Integer { min, max } => format!("{min}..{max}"),
-            Kind::Real { min, max, auto } => format!("{min}..{max}{}", if *auto { " | auto" } else { "" }),
+            Kind::Real { min, max, auto } => {
+                format!("{}..{}{}", spelled(*min), spelled(*max), if *auto { " | auto" } else { "" })
+            }
         }
     }
 }
@@ -134,6 +136,12 @@ impl Choice {
     fn spelling(&self) -> String {
         self.number.map_or_else(|| self.name.to_owned(), |n| format!("{}{}..{}", self.name, n.min, n.max))
     }
+}
+
+/// A limit as people write it: with an exponent where there would be many zeros.
+fn spelled(limit: f64) -> String {
+    let has_many_zeros = limit.abs() >= 1e6 || (limit.abs() < 1e-3 && limit.abs() > 0.0);
+    if has_many_zeros { format!("{limit:e}") } else { limit.to_string() }
 }
 
 fn parse_choice(typed: &str, choices: &[Choice]) -> Result<Value, String> {
@@ -176,6 +184,16 @@ mod tests {
         assert!(filter().parse("pcf-box33").is_err());
         assert!(filter().parse("nearest2").is_err());
         assert!(filter().parse("pcf").unwrap_err().contains("pcf-box"));
+    }
+
+    #[test]
+    fn limits_are_short_and_read_back_as_themselves() {
+        for (limit, expected) in
+            [(0.0, "0"), (0.01, "0.01"), (64.0, "64"), (1e4, "10000"), (-1e6, "-1e6"), (1e-12, "1e-12")]
+        {
+            assert_eq!(spelled(limit), expected);
+            assert_eq!(spelled(limit).parse(), Ok(limit));
+        }
     }
 
     #[test]

@@ -132,6 +132,14 @@ pub(crate) fn workgroups(threads: usize) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::layout::{rust_layout, wgsl_layout};
+    use crate::gpu::shader::wgsl;
+
+    #[test]
+    fn receivers_lie_as_the_shaders_read_them() {
+        let in_rust = rust_layout!(GpuReceiver { point_in_world, triangle, normal_in_world, pixel });
+        assert_eq!(wgsl_layout(&[wgsl!("shared/receiver.wgsl")], "Receiver"), in_rust);
+    }
 
     #[test]
     fn enough_threads_for_every_receiver() {

@@ -118,10 +118,11 @@ impl Spec {
         Self::parse(&format!("{}:{}", self.technique.id(), typed.join(",")))
     }
 
-    /// Every parameter with its value, in declared order.
+    /// "bias none → closed-form": the parameters in which another specification of the family differs.
     #[must_use]
-    pub fn values(&self) -> &[(&'static str, Value)] {
-        &self.values
+    pub fn changes_to(&self, other: &Self) -> String {
+        let changes = self.values.iter().zip(&other.values).filter(|(old, new)| old != new);
+        changes.map(|((name, old), (_, new))| format!("{name} {old} → {new}")).collect::<Vec<_>>().join(", ")
     }
 
     /// Only the parameters that differ from their defaults.
@@ -225,6 +226,7 @@ mod tests {
         let spec = Spec::parse("map:size=512,filter=pcf-box5").unwrap();
         assert_eq!(spec.with("size", "64").unwrap().short(), "map:size=64,filter=pcf-box5");
         assert!(spec.with("size", "0").is_err());
+        assert_eq!(spec.changes_to(&spec.with("size", "64").unwrap()), "size 512 → 64");
     }
 
     #[test]

@@ -38,14 +38,7 @@ pub fn exact(
     let start = Instant::now();
     let eye = scene.camera.eye.as_dvec3();
     let radius_m = scene.bounds().radius();
-    let decide = |receiver: &Receiver| {
-        let segment = light.segment_from(receiver.point_in_world, radius_m);
-        match casters.occlusion(&segment, Some(receiver.triangle), rounding_radius_m(receiver, eye)) {
-            Occlusion::Clear => Truth::Known(Visibility::LIT),
-            Occlusion::Blocked => Truth::Known(Visibility::SHADOW),
-            Occlusion::Doubtful => Truth::Undecided,
-        }
-    };
+    let decide = |receiver: &Receiver| of_receiver(casters, light, receiver, eye, radius_m);
 
     let (width, height) = (receivers.size.x as usize, receivers.size.y as usize);
     watch.start("exact truth", u64::from(receivers.size.y));
@@ -64,6 +57,17 @@ pub fn exact(
     let rays = pixels.iter().flatten().count() as u64;
     let mask = TruthMask { size: receivers.size, pixels };
     Ok(ExactTruth { mask, rays, ms: start.elapsed().as_secs_f64() * 1e3 })
+}
+
+/// Decides one receiver; `scene_radius_m` is that of the scene's bounds. What replays start from.
+#[must_use]
+pub fn of_receiver(casters: &Casters, light: &Light, receiver: &Receiver, eye: DVec3, scene_radius_m: f64) -> Truth {
+    let segment = light.segment_from(receiver.point_in_world, scene_radius_m);
+    match casters.occlusion(&segment, Some(receiver.triangle), rounding_radius_m(receiver, eye)) {
+        Occlusion::Clear => Truth::Known(Visibility::LIT),
+        Occlusion::Blocked => Truth::Known(Visibility::SHADOW),
+        Occlusion::Doubtful => Truth::Undecided,
+    }
 }
 
 /// Roundings of f64 that a receiver's point may be off by, with a good margin: the ray's direction takes about 12 of

@@ -8,7 +8,7 @@ mod exact;
 mod tests;
 
 pub use cross_check::{Disagreement, cross_check};
-pub use exact::{ExactTruth, exact};
+pub use exact::{ExactTruth, exact, of_receiver};
 
 use crate::receiver::{PixelClass, Receiver, Receivers};
 

@@ -8,6 +8,10 @@ use gnomon::scene;
 use std::f64::consts::TAU;
 use testing::{Random, Shape};
 
+pub(crate) mod files;
+pub(crate) mod outline;
+pub(crate) mod scenes;
+pub(crate) mod shot;
 #[path = "../../src/cast/testing.rs"]
 pub(crate) mod testing;
 

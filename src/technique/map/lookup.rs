@@ -124,10 +124,22 @@ impl Lookup {
         along_light + self.closed_form(point_in_world, normal_in_world, (q, depth), kernel)
     }
 
-    /// The bias that the receiver's own slope needs for a kernel of that many texel widths (docs/map.md#bias), in units
-    /// of depth.
+    /// The closed-form bias: what suffices, but no more than the cap (docs/map.md#bias), in units of depth.
     #[must_use]
     pub fn closed_form(
+        &self,
+        point_in_world: DVec3,
+        normal_in_world: DVec3,
+        (q, depth): (f64, f64),
+        kernel: f64,
+    ) -> f64 {
+        let cap = self.bias.cap_texels * self.frustum.texel_m(q).max_element() / self.frustum.metres_per_depth(q);
+        self.sufficient_bias(point_in_world, normal_in_world, (q, depth), kernel).min(cap)
+    }
+
+    /// The bias that the receiver's own slope needs for a kernel of that many texel widths, in units of depth.
+    #[must_use]
+    pub fn sufficient_bias(
         &self,
         point_in_world: DVec3,
         normal_in_world: DVec3,
@@ -141,9 +153,7 @@ impl Lookup {
         let largest = point_in_world.abs().max_element();
         let position =
             largest * POSITION_ROUNDING * (1.0 / metres_per_depth + (slope_per_texel / texel_m).element_sum());
-        let format = FORMAT_STEPS * self.format.step(depth);
-        let cap = self.bias.cap_texels * texel_m.max_element() / metres_per_depth;
-        (slope + position + format).min(cap)
+        slope + position + FORMAT_STEPS * self.format.step(depth)
     }
 
     /// Change of depth from one texel to the next along u and along v on the receiver's plane, without sign.
@@ -243,4 +253,39 @@ pub(super) struct LookupUniform {
     fixed_step: f32,
     float_step: f32,
     padding: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LookupUniform;
+    use crate::gpu::layout::{rust_layout, wgsl_layout};
+    use crate::technique::map::shader_modules;
+
+    #[test]
+    fn the_uniform_lies_as_the_shaders_read_it() {
+        let lookups: Vec<_> =
+            shader_modules().into_iter().filter(|(label, _)| label.starts_with("map lookup")).collect();
+        assert!(!lookups.is_empty());
+        for (label, files) in lookups {
+            let in_rust = rust_layout!(LookupUniform {
+                map_from_world,
+                plane_in_map_from_world,
+                light,
+                texels,
+                texel_at_q1,
+                metres_per_depth_terms,
+                kernel,
+                depth_sign,
+                closed_form_kernel,
+                raster_slack_texels,
+                cap_texels,
+                normal_texels,
+                depth_m,
+                fixed_step,
+                float_step,
+                padding,
+            });
+            assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
+        }
+    }
 }

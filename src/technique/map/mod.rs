@@ -12,6 +12,7 @@ mod depth_format;
 mod exact_texels;
 pub mod filter;
 mod lookup;
+mod own_surface;
 mod passes;
 mod prepared;
 pub mod projection;

@@ -5,6 +5,8 @@ use crate::technique::Spec;
 
 /// Largest map the family knows, texels a side.
 const LARGEST: i64 = 16_384;
+/// How much farther a cap of the closed-form bias is tried.
+const CAP_FACTOR: f64 = 4.0;
 
 /// One knob changed in each; only changes that are legal and change anything.
 pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
@@ -13,6 +15,10 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
     let set = |key: &'static str, value: &str| (key, value.to_owned());
     let (_, kernel) = spec.choice("filter");
     let changes = match cause {
+        // Acne in spite of the closed form: its cap holds it back.
+        Cause::Acne if spec.choice("bias").0 == "closed-form" => {
+            vec![set("bias_cap_texels", &(CAP_FACTOR * spec.real("bias_cap_texels")).to_string()), larger(2)]
+        }
         Cause::Acne => vec![set("bias", "closed-form"), set("bias", "slope"), larger(2)],
         Cause::Curvature => vec![set("bias_normal_texels", "1"), larger(2), set("bias_slope", "4")],
         Cause::PeterPanning => vec![
@@ -58,5 +64,7 @@ mod tests {
         }
         assert!(remedies(&spec, Cause::EdgeAliasing).is_empty(), "there is no larger map");
         assert_eq!(remedies(&spec, Cause::Acne)[0].short(), "map:size=16384");
+        let capped = Spec::parse("map:bias_cap_texels=2").unwrap();
+        assert_eq!(remedies(&capped, Cause::Acne)[0].short(), "map:bias_cap_texels=8");
     }
 }

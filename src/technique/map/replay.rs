@@ -4,11 +4,13 @@
 
 use super::exact_texels::{ExactTexel, ExactTexels};
 use super::lookup::{Outside, Placed};
+use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
 use crate::cast::Hit;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
+use crate::scene::Segment;
 use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
 use glam::IVec2;
@@ -75,8 +77,7 @@ fn replay_pixel(
     let receiver = map.receiver(pixel)?;
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
     let segment = map.job.light.segment_from(receiver.point_in_world, map.scene_radius_m);
-    let mut hits = Vec::new();
-    map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
+    let hits = blockers(map, &receiver, &segment);
     let exact = visibility(hits.is_empty());
 
     let coverage = coverage(map, &receiver, &hits);
@@ -87,8 +88,11 @@ fn replay_pixel(
         (found.map_or(1.0, |found| visibility(map.lookup.is_lit(placed.reference, found.depth))), found)
     };
     let sampling = placed.map_or(Step { value: 1.0, cause: Cause::ClippingFrustum }, |placed| {
-        let (value, found) = sampled(&placed, placed.position_in_texels.floor().as_ivec2());
-        Step { value, cause: sampling_cause(map, pixel, &receiver, &placed, value, found) }
+        let texel = placed.position_in_texels.floor().as_ivec2();
+        let (value, found) = sampled(&placed, texel);
+        let is_dark = value < 1.0;
+        let own = found.filter(|_| is_dark).and_then(|found| self_shadowing(map, &receiver, &placed, texel, found));
+        Step { value, cause: own.unwrap_or_else(|| aliasing_cause(map.footprint(pixel).as_ref())) }
     });
     let filter = placed.map_or(Step { value: 1.0, cause: Cause::FilterWidth }, |placed| {
         let (mut value, mut self_shadow, mut other) = (0.0, 0.0, 0.0);
@@ -96,7 +100,7 @@ fn replay_pixel(
         each_tap(map, &placed, &mut |texel, weight| {
             let (lit, found) = sampled(&placed, texel);
             value += weight * lit;
-            match found.and_then(|found| self_shadowing(map, &receiver, &placed, found)).filter(|_| lit == 0.0) {
+            match found.filter(|_| lit == 0.0).and_then(|found| self_shadowing(map, &receiver, &placed, texel, found)) {
                 Some(cause) => {
                     self_shadow += weight;
                     self_cause = cause;
@@ -118,6 +122,16 @@ fn replay_pixel(
     });
     let precision = |value: f64| Step { value, cause: Cause::Precision };
     Some((exact, [coverage, bias, sampling, filter, precision(stored_texels), precision(answered)]))
+}
+
+/// What blocks a segment from a receiver, by the truth's definition: neither the receiver's triangle nor what continues
+/// it in its plane.
+fn blockers(map: &PreparedMap<'_>, receiver: &Receiver, segment: &Segment) -> Vec<Hit> {
+    let casters = map.job.casters;
+    let mut hits = Vec::new();
+    casters.all_hits(segment, Some(receiver.triangle), &mut hits);
+    hits.retain(|hit| !casters.continues(receiver.triangle, hit.triangle));
+    hits
 }
 
 fn visibility(is_lit: bool) -> f64 {
@@ -142,8 +156,7 @@ fn coverage(map: &PreparedMap<'_>, receiver: &Receiver, hits: &[Hit]) -> Step {
 /// The exact ray with the bias: blockers that the comparison cannot tell from the receiver are not there.
 fn biased(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed) -> f64 {
     let segment = map.job.light.segment_from(placed.point_in_world, map.scene_radius_m);
-    let mut hits = Vec::new();
-    map.job.casters.all_hits(&segment, Some(receiver.triangle), &mut hits);
+    let hits = blockers(map, receiver, &segment);
     let blocks = |hit: &Hit| {
         let Ok((_, depth, _)) = map.lookup.project(segment.from.lerp(segment.to, hit.t)) else { return false };
         let stored = depth + map.lookup.hardware_bias(map.job.scene.triangle_in_world(hit.triangle));
@@ -152,37 +165,29 @@ fn biased(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed) -> f64 {
     visibility(!hits.iter().any(blocks))
 }
 
-/// `acne` or `curvature` where a texel holds the receiver's own surface: the triangle itself, or one that shares a
-/// welded vertex with it; `None` where it holds another surface or nothing.
-fn self_shadowing(map: &PreparedMap<'_>, receiver: &Receiver, placed: &Placed, found: ExactTexel) -> Option<Cause> {
+/// `acne` or `curvature` where a texel holds the receiver's own surface, by whether the bias that the receiver's slope
+/// needs would clear it; `None` where it holds another surface or nothing.
+fn self_shadowing(
+    map: &PreparedMap<'_>,
+    receiver: &Receiver,
+    placed: &Placed,
+    texel: IVec2,
+    found: ExactTexel,
+) -> Option<Cause> {
     let triangle = found.triangle?;
+    if !is_own_surface(map, receiver, placed, texel, triangle) {
+        return None;
+    }
     if map.job.casters.same_surface(triangle, receiver.triangle) {
         return Some(Cause::Acne);
     }
-    if !map.job.adjacency.shares_vertex(triangle, receiver.triangle) {
-        return None;
-    }
     let kernel = map.settings.filter.bias_kernel(map.settings.kernel);
     let sufficient =
-        map.lookup.closed_form(placed.point_in_world, receiver.normal_in_world, (placed.q, placed.depth), kernel);
+        map.lookup.sufficient_bias(placed.point_in_world, receiver.normal_in_world, (placed.q, placed.depth), kernel);
     let reference = placed.depth - map.lookup.frustum.depth_sign() * sufficient;
-    Some(if map.lookup.is_lit(reference, found.depth) { Cause::Acne } else { Cause::Curvature })
-}
-
-fn sampling_cause(
-    map: &PreparedMap<'_>,
-    pixel: u32,
-    receiver: &Receiver,
-    placed: &Placed,
-    value: f64,
-    found: Option<ExactTexel>,
-) -> Cause {
-    if value < 1.0
-        && let Some(cause) = found.and_then(|found| self_shadowing(map, receiver, placed, found))
-    {
-        return cause;
-    }
-    aliasing_cause(map.footprint(pixel).as_ref())
+    // In place of the bias there is, not on top of it.
+    let unbiased = found.depth - map.lookup.hardware_bias(map.job.scene.triangle_in_world(triangle));
+    Some(if map.lookup.is_lit(reference, unbiased) { Cause::Acne } else { Cause::Curvature })
 }
 
 /// Where one pixel's lookup went, for people.

@@ -1,0 +1,158 @@
+//! Volumes ready to run for one light: the GPU objects, and the f64 twin that counts at any pixel.
+
+use super::count::Counter;
+use super::eye::Eye;
+use super::passes::VolumePasses;
+use super::settings::{FarPlane, Settings};
+use super::states::Side;
+use super::volumes::Volumes;
+use super::{facts, replay};
+use crate::cause::Replay;
+use crate::mask::Mask;
+use crate::receiver::Receiver;
+use crate::technique::footprint::Footprint;
+use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
+
+/// Shadow volumes of one light, ready to run.
+pub struct PreparedVolume<'j> {
+    pub(super) job: Job<'j>,
+    pub(super) settings: Settings,
+    pub(super) eye: Eye,
+    pub(super) volumes: Volumes,
+    pub(super) counter: Counter<'j>,
+    pub(super) passes: VolumePasses,
+    receivers: ReceiverBuffer,
+}
+
+impl std::fmt::Debug for PreparedVolume<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PreparedVolume").field("settings", &self.settings).finish_non_exhaustive()
+    }
+}
+
+/// What the stencil should hold at one pixel, one approximation after the other. Each is a number of volumes, which a
+/// stencil of 8 bits keeps modulo 256.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PixelCounts {
+    /// Casting triangles in use that the segment from the receiver to the light crosses.
+    pub crossed: i64,
+    /// With volumes cut off at their length and at the far plane.
+    pub reached: i64,
+    /// With counts that begin at the near plane instead of outside all volumes.
+    pub from_near: i64,
+    /// With nothing drawn outside the scissor.
+    pub drawn: i64,
+    /// True if the segment runs through an edge or a corner of the casters, where the count may be off by rounding.
+    pub is_tied: bool,
+}
+
+impl PixelCounts {
+    /// What a stencil that wraps holds.
+    #[must_use]
+    pub fn stencil(&self) -> u8 {
+        self.drawn.rem_euclid(1 << u8::BITS) as u8
+    }
+}
+
+impl<'j> PreparedVolume<'j> {
+    /// Builds everything for one light.
+    ///
+    /// # Errors
+    /// [`TechniqueError`]; a far plane before the near plane is [`TechniqueError::Unsupported`].
+    pub fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+        let eye = Eye::new(job.scene, &settings)?;
+        let volumes = Volumes::new(job.scene, job.light, &settings, &eye);
+        let counter = Counter::new(job.scene, job.light, job.casters, job.adjacency, &volumes);
+        let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
+        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &receivers)?;
+        Ok(Self { job, settings, eye, volumes, counter, passes, receivers })
+    }
+
+    /// The stencil that the last run left, one value per pixel, row by row from the top.
+    ///
+    /// # Errors
+    /// What the device reported.
+    pub fn stencil(&self) -> Result<Vec<u8>, TechniqueError> {
+        Ok(self.passes.stencil(self.job.gpu)?)
+    }
+
+    /// How many objects are counted before the surface, and how many behind it.
+    #[must_use]
+    pub fn objects_before_and_behind(&self) -> (usize, usize) {
+        let before = self.volumes.sides.iter().filter(|side| **side == Side::Before).count();
+        (before, self.volumes.sides.len() - before)
+    }
+
+    /// What the stencil should hold at a pixel (`y * width + x`); `None` for background.
+    #[must_use]
+    pub fn counts(&self, pixel: u32) -> Option<PixelCounts> {
+        let receiver = self.receiver(pixel)?;
+        let far_point = self.eye.far_m.map(|far_m| self.eye.point_at(pixel, far_m));
+        // A surface behind the far plane is not drawn: the stencil counts up to the plane.
+        let is_beyond_far = self.eye.far_m.is_some_and(|far_m| self.eye.distance_m(receiver.point_in_world) > far_m);
+        let at_surface = match far_point.filter(|_| is_beyond_far) {
+            Some(point) => self.counter.at(point, None),
+            None => self.counter.at(receiver.point_in_world, Some(receiver.triangle)),
+        };
+        let mut is_tied = at_surface.is_tied;
+        let mut minus = |cut: Option<super::count::Count>, count: fn(&super::count::Count) -> i64| {
+            is_tied |= cut.is_some_and(|cut| cut.is_tied);
+            cut.map_or(0, |cut| count(&cut))
+        };
+        let is_cut_off = matches!(self.settings.far, FarPlane::Finite(_));
+        let at_far = far_point.filter(|_| is_cut_off).map(|point| self.counter.at(point, None));
+        let reached = at_surface.reached() - minus(at_far, |count| count.behind);
+        // zp-plus draws what is missing at the near plane.
+        let starts_at_near = self.volumes.sides.contains(&Side::Before) && self.volumes.near_casters.is_none();
+        let at_near = starts_at_near.then(|| self.counter.at(self.eye.near_point(pixel), None));
+        let from_near = reached - minus(at_near, |count| count.before);
+        let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x);
+        Some(PixelCounts {
+            crossed: at_surface.endless,
+            reached,
+            from_near,
+            drawn: if is_drawn { from_near } else { 0 },
+            is_tied,
+        })
+    }
+
+    pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
+        self.job.receivers.pixels.get(pixel as usize).copied().flatten()
+    }
+
+    /// The stencil that the same volumes leave when it wraps.
+    pub(super) fn wrapped_stencil(&self) -> Result<Vec<u8>, TechniqueError> {
+        let wrapping = Settings { clamps_stencil: false, ..self.settings };
+        let passes = VolumePasses::new(&self.job, &wrapping, &self.eye, &self.volumes, &self.receivers)?;
+        passes.run(self.job.gpu, &self.receivers)?;
+        Ok(passes.stencil(self.job.gpu)?)
+    }
+}
+
+impl Prepared for PreparedVolume<'_> {
+    fn run(&self) -> Result<Answer, TechniqueError> {
+        let passes = self.passes.run(self.job.gpu, &self.receivers)?;
+        Ok(Answer { mask: self.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
+    }
+
+    fn bytes(&self) -> u64 {
+        self.passes.bytes() + self.receivers.bytes()
+    }
+
+    fn facts(&self) -> Vec<(String, String)> {
+        facts::facts(self)
+    }
+
+    fn replay(&self, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
+        replay::replay(self, answer, pixels)
+    }
+
+    fn lookup_facts(&self, pixel: u32) -> Result<Vec<(String, String)>, TechniqueError> {
+        facts::lookup_facts(self, pixel)
+    }
+
+    /// Volumes have no samples.
+    fn footprint(&self, _pixel: u32) -> Option<Footprint> {
+        None
+    }
+}

@@ -1,0 +1,91 @@
+//! The ledger adds up: on every shipped scene, for every light and every kind of map, the causes' contributions make
+//! exactly the error that was measured.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
+
+mod support;
+
+use glam::UVec2;
+use gnomon::cause::Replay;
+use gnomon::evaluate::Evaluation;
+use gnomon::verdict::{LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
+use support::scenes::shipped;
+use support::shot::{Shot, shipped_scenes};
+
+const SIZE: UVec2 = UVec2::new(80, 60);
+
+/// Every axis, every format, filters of odd and even kernels, sizes far too small and of no power of two, every kind of
+/// bias alone and together, and frusta that cut.
+const SPECS: [&str; 21] = [
+    "map",
+    "map:bias=none",
+    "map:size=512,bias=constant",
+    "map:bias=slope",
+    "map:size=512,bias=slope,bias_constant_ulps=1000,bias_clamp=0.001",
+    "map:size=512,filter=pcf-box2",
+    "map:size=700,filter=pcf-box3,bias=none",
+    "map:filter=pcf-box5,bias=slope",
+    "map:size=256,filter=pcf-box8",
+    "map:depth_convention=forward,bias=slope",
+    "map:size=512,format=depth16unorm,bias=none",
+    "map:format=depth16unorm,depth_convention=forward,filter=pcf-box3",
+    "map:size=512,format=depth24plus,bias=slope",
+    "map:size=64",
+    "map:size=1,bias=none",
+    "map:size=101,bias_normal_texels=2",
+    "map:size=256,bias=none,bias_normal_texels=1.5,filter=pcf-box4",
+    "map:size=400,bias_depth_m=0.05",
+    "map:fit=receivers,size=300",
+    "map:fit=manual,filter=pcf-box3",
+    "map:size=333,near_m=3,far_m=5,phase_u_texels=0.3",
+];
+
+/// Each pixel's residue may be as large as [`RESIDUE_ABOVE`], and no picture here has more than 10⁴ pixels.
+const SUM_ROUNDING: f64 = 1e-6;
+
+#[test]
+fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
+    let mut evaluated = 0;
+    for scene in shipped_scenes(SIZE) {
+        for light in &scene.lights {
+            let shot = Shot::new(&scene, &light.name);
+            for spec in SPECS {
+                let what = format!("{}, light '{}', {spec}", scene.name, light.name);
+                check(&what, &shot.evaluate_spec(&shot.supported(spec)));
+                evaluated += 1;
+            }
+        }
+    }
+    println!("{evaluated} evaluations");
+    assert!(evaluated >= 14 * SPECS.len(), "the scenes of the repository alone have 14 lights");
+}
+
+fn check(what: &str, evaluation: &Evaluation<'_>) {
+    let (verdict, ledger) = (&evaluation.verdict, &evaluation.ledger);
+    let measured = verdict.error.signed.unwrap_or(0.0) * verdict.pixels.asked as f64;
+    let booked: f64 = ledger.causes.values().map(|share| share.sum).sum();
+    assert!((booked - measured).abs() <= SUM_ROUNDING, "{what}: booked {booked}, measured {measured}");
+    let named: u64 = ledger.causes.values().map(|share| share.pixels).sum();
+    assert_eq!((named, ledger.wrong.len() as u64), (verdict.pixels.wrong, verdict.pixels.wrong), "{what}");
+    let differing: u64 = ledger.causes.values().map(|share| share.pixels + share.merely_differing).sum();
+    assert_eq!(differing, verdict.pixels.differing, "{what}");
+    for &pixel in &evaluation.replay.pixels {
+        let entries = entries_of_pixel(&evaluation.replay, pixel).expect("replayed");
+        let error = verdict.signed_error[pixel as usize].expect("compared");
+        let residue = entries.iter().map(|entry| entry.contribution).sum::<f64>() - error;
+        assert!(residue.abs() <= RESIDUE_ABOVE, "{what}: pixel {pixel} leaves {residue}");
+    }
+}
+
+#[test]
+fn a_replay_that_ends_elsewhere_is_refused() {
+    let scene = shipped("triangle", SIZE.to_array());
+    let shot = Shot::new(&scene, "lamp");
+    let evaluation = shot.evaluate("map:bias=none");
+    let judged = |replay: &Replay| ledger(&evaluation.verdict, &shot.question.truth.mask, &evaluation.mask, replay);
+    let mut tampered = evaluation.replay.clone();
+    assert_eq!(judged(&tampered), Ok(evaluation.ledger.clone()));
+    let last = tampered.stages.last_mut().expect("stages");
+    last.values[0] = (last.values[0] - 1e3 * RESIDUE_ABOVE).abs();
+    assert!(matches!(judged(&tampered), Err(LedgerError::Residue { .. })));
+}
