@@ -1,0 +1,109 @@
+//! A cause is a counterfactual: without that approximation the pixel would be right. So it is taken away on the GPU, and
+//! it alone, and at least 95 % of the pixels that the ledger gave to it come right.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
+
+mod support;
+
+use gnomon::cause::Cause;
+use support::models::{corrugated_sheet, plate};
+use support::scenes::shipped;
+use support::shot::{Shot, named};
+
+const SIZE: [u32; 2] = [256, 192];
+
+/// Share of a cause's pixels that must come right without it.
+const REMOVED: f64 = 0.95;
+/// Fewer pixels than this prove little at 95 %.
+const FEWEST: usize = 40;
+
+/// Share of the pixels named after a cause in one evaluation that are right in another.
+fn removed(shot: &Shot<'_>, with: &str, without: &str, cause: Cause) -> f64 {
+    let (with_it, without_it) = (shot.evaluate(with), shot.evaluate(without));
+    let named = named(&with_it, &[cause]);
+    assert!(named.len() >= FEWEST, "{with}: {} pixels of {cause:?}", named.len());
+    let right = named.iter().filter(|pixel| !without_it.verdict.is_wrong(**pixel as usize)).count();
+    let share = right as f64 / named.len() as f64;
+    println!("{with} → {without}: {right} of {} {cause:?} pixels come right", named.len());
+    share
+}
+
+fn assert_removed(shot: &Shot<'_>, with: &str, without: &str, cause: Cause) {
+    let share = removed(shot, with, without, cause);
+    assert!(share >= REMOVED, "{with} → {without}: {share} of the {cause:?} pixels come right");
+}
+
+/// A map 32 times the size: nothing else changes.
+#[test]
+fn a_finer_map_removes_aliasing_and_curvature() {
+    // In a picture so small that no pixel is smaller than a texel.
+    let fence = shipped("fence", [64, 48]);
+    assert_removed(&Shot::new(&fence, "sun"), "map:size=256", "map:size=8192", Cause::EdgeAliasing);
+    let polygons = shipped("polygons-69", SIZE);
+    assert_removed(&Shot::new(&polygons, "lamp"), "map:size=256", "map:size=8192", Cause::PerspectiveAliasing);
+    let grazing = plate(7.0, 30.0);
+    assert_removed(&Shot::new(&grazing, "sun"), "map:size=128", "map:size=4096", Cause::ProjectiveAliasing);
+    let sheet = corrugated_sheet();
+    assert_removed(&Shot::new(&sheet, "sun"), "map:size=53", "map:size=1696", Cause::Curvature);
+}
+
+#[test]
+fn a_sufficient_bias_removes_acne() {
+    let (torus, posts) = (shipped("torus", SIZE), shipped("posts", SIZE));
+    assert_removed(&Shot::new(&torus, "lamp"), "map:bias=none", "map", Cause::Acne);
+    assert_removed(&Shot::new(&posts, "sun"), "map:bias=slope", "map", Cause::Acne);
+    let filtered = "map:filter=pcf-box5";
+    assert_removed(&Shot::new(&torus, "sun"), &format!("{filtered},bias=none"), filtered, Cause::Acne);
+}
+
+#[test]
+fn no_bias_removes_peter_panning() {
+    let (contact, fence) = (shipped("contact", SIZE), shipped("fence", SIZE));
+    let contact = Shot::new(&contact, "sun");
+    assert_removed(&contact, "map:bias=none,bias_depth_m=0.1", "map:bias=none", Cause::PeterPanning);
+    assert_removed(&contact, "map:bias=none,bias_normal_texels=40", "map:bias=none", Cause::PeterPanning);
+    assert_removed(&contact, "map:bias_constant_ulps=1e6", "map", Cause::PeterPanning);
+    assert_removed(&Shot::new(&fence, "sun"), "map:size=256", "map:size=256,bias=none", Cause::PeterPanning);
+}
+
+#[test]
+fn a_frustum_that_holds_everything_removes_clipping() {
+    let torus = shipped("torus", SIZE);
+    let (lamp, sun) = (Shot::new(&torus, "lamp"), Shot::new(&torus, "sun"));
+    assert_removed(&lamp, "map:near_m=4.2", "map", Cause::ClippingNear);
+    assert_removed(&lamp, "map:far_m=5.2", "map", Cause::ClippingFar);
+    assert_removed(&lamp, "map:fov_deg=25", "map", Cause::ClippingFrustum);
+    assert_removed(&sun, "map:width_m=2", "map", Cause::ClippingFrustum);
+}
+
+#[test]
+fn a_single_tap_removes_the_filters_width() {
+    let posts = shipped("posts", SIZE);
+    let shot = Shot::new(&posts, "sun");
+    assert_removed(&shot, "map:filter=pcf-box5", "map:filter=nearest", Cause::FilterWidth);
+    assert_removed(&shot, "map:filter=pcf-box5", "map:filter=pcf-box5,size=8192", Cause::FilterWidth);
+}
+
+#[test]
+fn a_float_format_removes_precision() {
+    let triangle = shipped("triangle", SIZE);
+    let deep = "map:bias=none,near_m=5e-6";
+    let shot = Shot::new(&triangle, "lamp");
+    assert_removed(&shot, &format!("{deep},format=depth16unorm"), deep, Cause::Precision);
+}
+
+/// Taking away what is not the cause removes next to nothing.
+#[test]
+fn another_approximation_removes_nothing() {
+    let torus = shipped("torus", SIZE);
+    let lamp = Shot::new(&torus, "lamp");
+    for (with, without, cause) in [
+        ("map:bias=none", "map:bias=none,size=4096", Cause::Acne),
+        ("map:near_m=4.2", "map:near_m=4.2,size=4096", Cause::ClippingNear),
+        ("map:fov_deg=25", "map:fov_deg=25,bias=slope", Cause::ClippingFrustum),
+        ("map:size=64", "map:size=64,bias=slope,bias_slope=4", Cause::PerspectiveAliasing),
+    ] {
+        let share = removed(&lamp, with, without, cause);
+        assert!(share < REMOVED, "{with} → {without}: {share} of the {cause:?} pixels come right");
+    }
+}
