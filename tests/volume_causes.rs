@@ -5,7 +5,8 @@ mod volume_stage;
 use glam::Vec3;
 use gnomon::cause::Cause;
 use gnomon::evaluate::View;
-use gnomon::scene::Scene;
+use gnomon::scene::{Mesh, Scene};
+use gnomon::technique::Prepared;
 use gnomon::watch::Unwatched;
 use volume_stage::testing::{Random, Shape};
 use volume_stage::*;
@@ -79,11 +80,8 @@ fn mixed_is_z_fail_bit_for_bit_from_everywhere() {
         let view = View::new(&gpu, &scene).unwrap();
         let classes = view.receivers.classify(&scene, &scene.lights[0]);
         let mask = |typed: &str| {
-            let settings = gnomon::technique::volume::Settings::of(&gnomon::technique::Spec::parse(typed).unwrap());
-            let job = view.job(&scene.lights[0], &classes);
-            let prepared = gnomon::technique::volume::PreparedVolume::new(settings, job).unwrap();
-            let answer = gnomon::technique::Prepared::run(&prepared).unwrap();
-            (answer.mask, prepared.objects_before_and_behind())
+            let prepared = prepare(&view, &scene.lights[0], &classes, typed);
+            (prepared.run().unwrap().mask, prepared.objects_before_and_behind())
         };
         let (mixed, chosen) = mask("volume:count=mixed");
         assert_eq!(mixed, mask("volume").0, "pose {pose}");
@@ -183,12 +181,8 @@ fn nested(here: u32, behind: u32) -> Scene {
     scene.triangles.extend(wall.triangles[..2].iter().map(|corners| corners.map(|v| v + first_vertex)));
     scene.corner_normals.extend([[Vec3::Z; 3]; 2]);
     scene.triangle_material.extend([0; 2]);
-    let mesh = gnomon::scene::Mesh {
-        name: "wall".into(),
-        triangles: first_triangle..first_triangle + 2,
-        casts: false,
-        receives: true,
-    };
+    let mesh =
+        Mesh { name: "wall".into(), triangles: first_triangle..first_triangle + 2, casts: false, receives: true };
     scene.meshes.push(mesh);
     scene.camera.fov_y_rad = 0.2;
     scene.image_size /= 4;

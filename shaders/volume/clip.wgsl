@@ -7,6 +7,7 @@ struct Eye {
     depth_at_infinity: f32,
     // 1 if the far plane is at infinity: the matrix's own row would put such points on either side of it by rounding.
     infinite: u32,
+    padding: vec2u,
 }
 @group(0) @binding(0) var<uniform> eye: Eye;
 

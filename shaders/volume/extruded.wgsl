@@ -6,6 +6,8 @@ struct Extrusion {
     light: vec4f,
     // 0 for infinite volumes.
     length_m: f32,
+    padding: u32,
+    more_padding: vec2u,
 }
 @group(0) @binding(1) var<uniform> extrusion: Extrusion;
 

@@ -1,7 +1,7 @@
 //! `gnomon list`: the scenes of a folder, the techniques and their parameters.
 
 use super::args::{ListArgs, Listed};
-use super::columns::{columns, text};
+use super::columns::{columns, paragraph, text};
 use super::exit;
 use super::terminal::{complain, say};
 use crate::scene::{self, LoadOptions};
@@ -46,10 +46,9 @@ fn described(technique: &dyn Technique) -> String {
         table.add_row([name, param.default.to_string(), param.range(), param.help.to_owned()]);
     }
     format!(
-        "{}: {}\n  {}\n  parameter, default, values:\n{}\n",
-        technique.id(),
-        technique.about(),
-        technique.citation(),
+        "{}\n{}\n  parameter, default, values:\n{}\n",
+        paragraph(&format!("{}: {}", technique.id(), technique.about()), ""),
+        paragraph(technique.citation(), "  "),
         text(table, "  ")
     )
 }

@@ -9,7 +9,7 @@ use glam::{DVec3, UVec2, Vec3};
 use gnomon::cause::Cause;
 use gnomon::evaluate::{Effort, EvaluateError, View, evaluate};
 use gnomon::gpu::Gpu;
-use gnomon::mask::{Mask, Truth, TruthMask, Visibility};
+use gnomon::mask::{Mask, Truth, TruthMask};
 use gnomon::receiver::Receivers;
 use gnomon::scene::{LightKind, Plane, Scene};
 use gnomon::technique::footprint::Footprint;
@@ -163,7 +163,7 @@ impl Outcome {
 
 /// Whether a pixel or one of its eight neighbours sees the other side of a true shadow edge, or is not decided.
 pub(crate) fn at_edge(truth: &TruthMask, pixel: u32) -> bool {
-    let (width, height) = (truth.size.x as i64, truth.size.y as i64);
+    let (width, height) = (i64::from(truth.size.x), i64::from(truth.size.y));
     let (x, y) = (i64::from(pixel) % width, i64::from(pixel) / width);
     let value = |x: i64, y: i64| truth.pixels[(y * width + x) as usize];
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
@@ -172,8 +172,18 @@ pub(crate) fn at_edge(truth: &TruthMask, pixel: u32) -> bool {
     inside.into_iter().any(|(x, y)| value(x, y) != own)
 }
 
-/// A mask with every visibility turned over.
-pub(crate) fn inverted(mask: &Mask) -> Mask {
-    let turned = |value: &Option<Visibility>| value.and_then(|value| Visibility::new(1.0 - value.get()));
-    Mask { size: mask.size, pixels: mask.pixels.iter().map(turned).collect() }
+/// A mask moved to the right by some pixels; what comes in is as it was.
+pub(crate) fn shifted(mask: &Mask, by: usize) -> Mask {
+    let width = mask.size.x as usize;
+    let source = |pixel: usize| if pixel % width < by { pixel } else { pixel - by };
+    Mask { size: mask.size, pixels: (0..mask.pixels.len()).map(|pixel| mask.pixels[source(pixel)]).collect() }
+}
+
+/// Pixels at which a mask and the truth of an outcome are on different sides of one half.
+pub(crate) fn wrong_pixels(outcome: &Outcome, mask: &Mask) -> Vec<u32> {
+    let is_wrong = |pixel: &u32| match (outcome.truth.pixels[*pixel as usize], mask.pixels[*pixel as usize]) {
+        (Some(Truth::Known(truth)), Some(answer)) => (truth.get() - answer.get()).abs() > 0.5,
+        _ => false,
+    };
+    (0..mask.pixels.len() as u32).filter(is_wrong).collect()
 }

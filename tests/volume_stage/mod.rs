@@ -1,8 +1,10 @@
 //! What the tests of shadow volumes share: small scenes, and one run with everything that is known about it.
 
 #![allow(dead_code, reason = "every test uses its own share")]
+#![allow(clippy::unwrap_used, reason = "a test helper that cannot go on fails its test")]
+#![allow(clippy::print_stderr, reason = "a skipped scene is said aloud")]
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{UVec2, Vec3};
 use gnomon::cause::Cause;
 use gnomon::evaluate::{Effort, Question, View, evaluate};
 use gnomon::gpu::Gpu;
@@ -104,7 +106,7 @@ pub(crate) struct Run {
 pub(crate) fn run(view: &View<'_>, question: &Question<'_>, typed: &str) -> Run {
     let spec = Spec::parse(typed).unwrap();
     let evaluation = evaluate(view, question, &spec, Effort::CAUSES, &Unwatched).unwrap();
-    let prepared = prepare(view, question, typed);
+    let prepared = prepare(view, question.light, &question.classes, typed);
     assert_eq!(prepared.run().unwrap().mask, evaluation.mask, "two runs differ");
     let pixels = evaluation.mask.pixels.len() as u32;
     Run {
@@ -125,14 +127,14 @@ pub(crate) fn run_first(gpu: &Gpu, scene: &Scene, typed: &str) -> Run {
     run(&view, &view.ask(&scene.lights[0], &Unwatched).unwrap(), typed)
 }
 
-pub(crate) fn prepare<'j>(view: &'j View<'_>, question: &'j Question<'j>, typed: &str) -> PreparedVolume<'j> {
-    let settings = Settings::of(&Spec::parse(typed).unwrap());
-    PreparedVolume::new(settings, view.job(question.light, &question.classes)).unwrap()
-}
-
-/// The light with another position or direction.
-pub(crate) fn with_kind(light: &Light, kind: LightKind) -> Light {
-    Light { kind, ..light.clone() }
+/// A `volume` specification ready to run.
+pub(crate) fn prepare<'j>(
+    view: &'j View<'_>,
+    light: &'j Light,
+    classes: &'j [PixelClass],
+    typed: &str,
+) -> PreparedVolume<'j> {
+    PreparedVolume::new(Settings::of(&Spec::parse(typed).unwrap()), view.job(light, classes)).unwrap()
 }
 
 /// A scene scaled about its origin; powers of two lose nothing.
@@ -198,10 +200,4 @@ impl Run {
     pub(crate) fn assert_exact(&self, what: &str) {
         assert!(self.counts_exactly(), "{what}: (off, off edge) = {:?} of {}", self.miscounts(), self.asked());
     }
-}
-
-/// The eye's ray through the middle of the picture meets the floor here.
-pub(crate) fn floor_under(eye: Vec3, target: Vec3) -> DVec3 {
-    let along = (target - eye).as_dvec3();
-    eye.as_dvec3() - along * (f64::from(eye.y) / along.y)
 }

@@ -59,7 +59,7 @@ pub enum Around {
 }
 
 impl Fit {
-    /// Reads the parameters that [`fit_params`](super::fit_params) declares.
+    /// Reads the fit parameters, which every technique with a fitted light frustum declares alike.
     #[must_use]
     pub fn of(spec: &Spec) -> Self {
         Self {

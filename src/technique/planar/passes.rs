@@ -2,8 +2,7 @@
 //! plane it shows; each plane's flattened casters are drawn where the stencil says so. A stencil holds 255 planes, so
 //! more of them take several rounds.
 
-use super::membership::Membership;
-use super::membership::runs;
+use super::membership::{Membership, runs};
 use super::settings::{Overlap, Placement, Projection, Settings};
 use super::{ShadowPlane, flatten};
 use crate::gpu::shader::{self, Wgsl, wgsl};

@@ -124,7 +124,7 @@ impl ShadowPlane {
 mod tests {
     use super::*;
     use crate::scene::LightKind;
-    use glam::{DVec2, UVec2, Vec3, dcamera::rh};
+    use glam::{DVec2, Vec3, dcamera::rh};
     use proptest::prelude::*;
 
     fn light(kind: LightKind) -> Light {
@@ -154,8 +154,8 @@ mod tests {
         [-half..half, -half..half, -half..half].prop_map(DVec3::from_array)
     }
 
-    /// f64 with the cancellation of d − s ≥ 1 % of d.
-    const F64_ROUNDING: f64 = 1e-12;
+    /// Rounding of a few f64 operations on coordinates up to 10, divided by d − s of at least 0.1 twice.
+    const F64_ROUNDING: f64 = 1e-10;
     /// The same through a matrix rounded to f32.
     const F32_ROUNDING: f64 = 1e-5;
 
@@ -172,7 +172,7 @@ mod tests {
             let expected = ray_hit(&shadow, point);
             let size = 1.0 + expected.length() + point.length();
             let image = shadow.divided(point).unwrap();
-            prop_assert!((image - expected).length() < F64_ROUNDING * size * 100.0, "{image} {expected}");
+            prop_assert!((image - expected).length() < F64_ROUNDING * size, "{image} {expected}");
             let rounded = shadow.flat_from_world().as_mat4().as_dmat4() * point.extend(1.0);
             prop_assert!((rounded.truncate() / rounded.w - expected).length() < F32_ROUNDING * size * size);
         }
@@ -183,13 +183,13 @@ mod tests {
                 ShadowPlane::new(&Plane { point: Vec3::ZERO, normal: normal.as_vec3() }, &point_light(at));
             let (m, d) = (shadow.flat_from_world(), shadow.light_height());
             let largest = |v: DVec4| v.abs().max_element();
-            prop_assert!(largest(m * shadow.light) < 1e-12 * d.max(1.0) * 100.0, "the light has no shadow");
-            prop_assert!(largest(m.transpose() * shadow.plane) < 1e-10, "every shadow is on the plane");
-            prop_assert!(m.determinant().abs() < 1e-8 * d.max(1.0).powi(4));
+            prop_assert!(largest(m * shadow.light) < F64_ROUNDING * d.max(1.0), "the light has no shadow");
+            prop_assert!(largest(m.transpose() * shadow.plane) < F64_ROUNDING, "every shadow is on the plane");
+            prop_assert!(m.determinant().abs() < F64_ROUNDING * 10.0_f64.powi(4), "it flattens");
             let (twice, once) = (m * m * point.extend(1.0), d * (m * point.extend(1.0)));
-            prop_assert!(largest(twice - once) < 1e-10 * (1.0 + largest(once)));
+            prop_assert!(largest(twice - once) < F64_ROUNDING * (1.0 + largest(once)));
             let on_plane = shadow.foot(point).extend(1.0);
-            prop_assert!(largest(m * on_plane - d * on_plane) < 1e-10);
+            prop_assert!(largest(m * on_plane - d * on_plane) < F64_ROUNDING);
         }
     }
 
@@ -276,7 +276,6 @@ mod tests {
     #[test]
     fn clip_space_keeps_what_is_between_plane_and_light() {
         let shadow = floor(DVec3::new(0.0, 4.0, 0.0));
-        let size = UVec2::new(64, 48);
         let view = rh::view::look_at_mat4(DVec3::new(0.0, 5.0, 9.0), DVec3::ZERO, DVec3::Y);
         let clip_from_world = rh::proj::directx::perspective_infinite_reverse(1.0, 4.0 / 3.0, 0.1) * view;
         let clipped = shadow.clipped(&clip_from_world, 1e-7);
@@ -293,9 +292,12 @@ mod tests {
         let clip = clipped * valid.extend(1.0);
         let image = clip_from_world * shadow.divided(valid).unwrap().extend(1.0);
         let ndc = |v: DVec4| DVec2::new(v.x, v.y) / v.w;
-        assert!((ndc(clip) - ndc(image)).length() < 1e-12, "{size}");
-        // Turned to the wrong side, the plane clips every valid caster and keeps what lies behind.
+        assert!((ndc(clip) - ndc(image)).length() < 1e-12);
+        // Turned to the wrong side, the plane loses every valid caster.
         let flipped = ShadowPlane { plane: -shadow.plane, ..shadow }.clipped(&clip_from_world, 1e-7);
-        assert!(!is_kept(&flipped, valid));
+        for height in [0.01, 0.5, 2.0, 3.9] {
+            let point = DVec3::new(0.1, height, 0.0);
+            assert!(is_kept(&clipped, point) && !is_kept(&flipped, point), "{height}");
+        }
     }
 }

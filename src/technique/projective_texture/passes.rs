@@ -200,3 +200,27 @@ fn lookup_pipeline(job: &Job<'_>, settings: &Settings) -> ComputePipeline {
         cache: None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::shader::concatenated;
+    use std::mem::offset_of;
+
+    #[test]
+    fn the_uniform_is_laid_out_as_the_shader_reads_it() {
+        let nearest = filter::by_name("nearest").shader();
+        let module = naga::front::wgsl::parse_str(&concatenated(&[RECEIVER, LOOKUP, nearest])).unwrap();
+        let lookup = module.types.iter().find(|(_, kind)| kind.name.as_deref() == Some("Lookup")).unwrap().1;
+        let naga::TypeInner::Struct { members, span } = &lookup.inner else { panic!("{lookup:?}") };
+        let offsets: Vec<usize> = members.iter().map(|member| member.offset as usize).collect();
+        let expected = [
+            offset_of!(LookupUniform, map_from_world),
+            offset_of!(LookupUniform, texels),
+            offset_of!(LookupUniform, kernel),
+            offset_of!(LookupUniform, padding),
+        ];
+        assert_eq!(offsets, expected);
+        assert_eq!(*span as usize, size_of::<LookupUniform>());
+    }
+}

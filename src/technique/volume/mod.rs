@@ -10,6 +10,7 @@
 mod assembly;
 mod casting;
 mod count;
+mod draws;
 mod extrude;
 mod eye;
 mod facts;

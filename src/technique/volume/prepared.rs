@@ -1,6 +1,6 @@
 //! Volumes ready to run for one light: the GPU objects, and the f64 twin that counts at any pixel.
 
-use super::count::Counter;
+use super::count::{Count, Counter};
 use super::eye::Eye;
 use super::passes::VolumePasses;
 use super::settings::{FarPlane, Settings};
@@ -87,32 +87,24 @@ impl<'j> PreparedVolume<'j> {
     #[must_use]
     pub fn counts(&self, pixel: u32) -> Option<PixelCounts> {
         let receiver = self.receiver(pixel)?;
-        let far_point = self.eye.far_m.map(|far_m| self.eye.point_at(pixel, far_m));
+        let at_receiver = self.counter.at(receiver.point_in_world, Some(receiver.triangle));
+        let at_far = self.eye.far_m.map(|far_m| self.counter.at(self.eye.point_at(pixel, far_m), None));
         // A surface behind the far plane is not drawn: the stencil counts up to the plane.
         let is_beyond_far = self.eye.far_m.is_some_and(|far_m| self.eye.distance_m(receiver.point_in_world) > far_m);
-        let at_surface = match far_point.filter(|_| is_beyond_far) {
-            Some(point) => self.counter.at(point, None),
-            None => self.counter.at(receiver.point_in_world, Some(receiver.triangle)),
-        };
-        let mut is_tied = at_surface.is_tied;
-        let mut minus = |cut: Option<super::count::Count>, count: fn(&super::count::Count) -> i64| {
-            is_tied |= cut.is_some_and(|cut| cut.is_tied);
-            cut.map_or(0, |cut| count(&cut))
-        };
-        let is_cut_off = matches!(self.settings.far, FarPlane::Finite(_));
-        let at_far = far_point.filter(|_| is_cut_off).map(|point| self.counter.at(point, None));
-        let reached = at_surface.reached() - minus(at_far, |count| count.behind);
+        let at_surface = at_far.filter(|_| is_beyond_far).unwrap_or(at_receiver);
+        let cut_at_far = at_far.filter(|_| matches!(self.settings.far, FarPlane::Finite(_))).unwrap_or_default();
         // zp-plus draws what is missing at the near plane.
         let starts_at_near = self.volumes.sides.contains(&Side::Before) && self.volumes.near_casters.is_none();
-        let at_near = starts_at_near.then(|| self.counter.at(self.eye.near_point(pixel), None));
-        let from_near = reached - minus(at_near, |count| count.before);
+        let at_near = if starts_at_near { self.counter.at(self.eye.near_point(pixel), None) } else { Count::default() };
+        let reached = at_surface.reached() - cut_at_far.behind;
+        let from_near = reached - at_near.before;
         let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x);
         Some(PixelCounts {
-            crossed: at_surface.endless,
+            crossed: at_receiver.endless,
             reached,
             from_near,
             drawn: if is_drawn { from_near } else { 0 },
-            is_tied,
+            is_tied: [at_surface, cut_at_far, at_near].iter().any(|count| count.is_tied),
         })
     }
 

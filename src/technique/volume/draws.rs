@@ -1,0 +1,203 @@
+//! What is drawn into the stencil: index lists on the device, each with its pipeline and uniforms.
+
+use super::assembly::Faces;
+use super::extrude::Reach;
+use super::eye::Eye;
+use super::pipelines::{Source, VolumeShader, near_pipeline, volume_pipeline};
+use super::settings::Settings;
+use super::states::{Counting, Half, Side};
+use super::volumes::Volumes;
+use crate::gpu::Gpu;
+use crate::technique::Job;
+use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, IndexFormat, RenderPass, RenderPipeline,
+};
+
+/// `Eye` of `shaders/volume/clip.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct EyeUniform {
+    clip_from_world: Mat4,
+    depth_at_infinity: f32,
+    infinite: u32,
+    padding: [u32; 2],
+}
+
+/// `Extrusion` of `shaders/volume/extruded.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct ExtrusionUniform {
+    light: [f32; 4],
+    length_m: f32,
+    padding: u32,
+    more_padding: [u32; 2],
+}
+
+/// One indexed draw.
+pub(super) struct Draw {
+    pipeline: RenderPipeline,
+    bindings: BindGroup,
+    vertices: Buffer,
+    indices: Buffer,
+    count: u32,
+}
+
+/// Builds draws and counts the bytes of what they use.
+pub(super) struct Builder<'b> {
+    gpu: &'b Gpu,
+    settings: &'b Settings,
+    eye_uniform: Buffer,
+    extrusion_uniform: Buffer,
+    corners: Option<Buffer>,
+    vertices: Buffer,
+    pub(super) bytes: u64,
+}
+
+impl Draw {
+    /// Records it.
+    pub(super) fn record(&self, pass: &mut RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
+    }
+}
+
+impl<'b> Builder<'b> {
+    pub(super) fn new(job: &Job<'b>, settings: &'b Settings, eye: &Eye, volumes: &Volumes) -> Self {
+        let gpu = job.gpu;
+        let extrusion = ExtrusionUniform {
+            light: job.light.homogeneous().as_vec4().to_array(),
+            length_m: match volumes.reach {
+                Reach::Infinite => 0.0,
+                Reach::Metres(length_m) => length_m as f32,
+            },
+            padding: 0,
+            more_padding: [0; 2],
+        };
+        let vertices = init(gpu, "volume vertices", bytemuck::cast_slice(&volumes.vertices), BufferUsages::VERTEX);
+        let eye_uniform = eye_buffer(gpu, eye);
+        let extrusion_uniform = uniform(gpu, bytemuck::bytes_of(&extrusion));
+        let bytes = vertices.size() + eye_uniform.size() + extrusion_uniform.size();
+        Self {
+            gpu,
+            settings,
+            eye_uniform,
+            extrusion_uniform,
+            corners: job.geometry.corners().cloned(),
+            vertices,
+            bytes,
+        }
+    }
+
+    /// Additions first, then subtractions, where faces take two passes.
+    pub(super) fn volume_draws(&mut self, side: Side, faces: &Faces) -> Vec<Draw> {
+        let counting = |inward| Counting {
+            side,
+            inward,
+            clamps: self.settings.clamps_stencil,
+            inclusive: self.settings.inclusive_compare,
+        };
+        let (outward, inward) = (counting(false), counting(true));
+        let shader = if self.settings.extrudes_on_gpu { VolumeShader::Extruded } else { VolumeShader::Given };
+        let volume_faces = [faces.sides.as_slice(), &faces.back_caps].concat();
+        let lists = [
+            (Source::Volumes(shader), outward, self.indices(&volume_faces)),
+            (Source::Scene, outward, self.indices(&faces.front_caps)),
+            (Source::Scene, inward, self.indices(&faces.inward_front_caps)),
+        ];
+        let halves: &[Option<Half>] =
+            if self.settings.two_pass { &[Some(Half::Additions), Some(Half::Subtractions)] } else { &[None] };
+        let order = halves.iter().flat_map(|half| lists.iter().map(move |list| (*half, list)));
+        order
+            .filter_map(|(half, (source, counting, indices))| {
+                let (indices, count) = indices.clone()?;
+                let pipeline = volume_pipeline(self.gpu, self.settings, *source, *counting, half);
+                let bindings = match source {
+                    Source::Volumes(VolumeShader::Extruded) => {
+                        bind(self.gpu, &pipeline, &[&self.eye_uniform, &self.extrusion_uniform])
+                    }
+                    Source::Volumes(VolumeShader::Given) | Source::Scene => {
+                        bind(self.gpu, &pipeline, &[&self.eye_uniform])
+                    }
+                };
+                let vertices = if *source == Source::Scene { self.corners.clone()? } else { self.vertices.clone() };
+                Some(Draw { pipeline, bindings, vertices, indices, count })
+            })
+            .collect()
+    }
+
+    pub(super) fn near_draws(&mut self, clip_from_caster: Mat4, corners: &[u32]) -> Vec<Draw> {
+        let Some(((indices, count), vertices)) = self.indices(corners).zip(self.corners.clone()) else {
+            return Vec::new();
+        };
+        let pipeline = near_pipeline(self.gpu, self.settings);
+        let matrix = uniform(self.gpu, bytemuck::bytes_of(&clip_from_caster));
+        self.bytes += matrix.size();
+        let bindings = bind(self.gpu, &pipeline, &[&matrix]);
+        vec![Draw { pipeline, bindings, vertices, indices, count }]
+    }
+
+    /// An index list on the device; `None` if it is empty.
+    fn indices(&mut self, list: &[u32]) -> Option<(Buffer, u32)> {
+        (!list.is_empty()).then(|| {
+            let buffer = init(self.gpu, "volume indices", bytemuck::cast_slice(list), BufferUsages::INDEX);
+            self.bytes += buffer.size();
+            (buffer, list.len() as u32)
+        })
+    }
+}
+
+/// The camera's uniform on the device.
+pub(super) fn eye_buffer(gpu: &Gpu, eye: &Eye) -> Buffer {
+    uniform(gpu, bytemuck::bytes_of(&eye_uniform(eye)))
+}
+
+fn eye_uniform(eye: &Eye) -> EyeUniform {
+    EyeUniform {
+        clip_from_world: eye.clip_from_world,
+        depth_at_infinity: eye.depth_at_infinity.unwrap_or_default(),
+        infinite: u32::from(eye.depth_at_infinity.is_some()),
+        padding: [0; 2],
+    }
+}
+
+fn uniform(gpu: &Gpu, contents: &[u8]) -> Buffer {
+    init(gpu, "volume uniform", contents, BufferUsages::UNIFORM)
+}
+
+fn init(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
+    gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+/// Uniforms bound in order.
+pub(super) fn bind(gpu: &Gpu, pipeline: &RenderPipeline, uniforms: &[&Buffer]) -> BindGroup {
+    let entries: Vec<BindGroupEntry<'_>> = (0..)
+        .zip(uniforms)
+        .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+        .collect();
+    let layout = &pipeline.get_bind_group_layout(0);
+    gpu.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::{rust_layout, wgsl_layout};
+    use crate::technique::volume::pipelines::shader_modules;
+
+    #[test]
+    fn uniforms_lie_where_the_shaders_read_them() {
+        let modules = shader_modules();
+        let (_, files) = modules.iter().find(|(label, _)| label == "volume extruded").unwrap();
+        let eye = rust_layout!(EyeUniform { clip_from_world, depth_at_infinity, infinite, padding });
+        assert_eq!(wgsl_layout(files, "Eye"), eye);
+        let extrusion = rust_layout!(ExtrusionUniform { light, length_m, padding, more_padding });
+        assert_eq!(wgsl_layout(files, "Extrusion"), extrusion);
+        assert_ne!(eye, extrusion);
+    }
+}
