@@ -11,6 +11,8 @@ use rayon::prelude::*;
 pub(in crate::technique) struct ExactTexel {
     /// Depth with the rasteriser's bias; the cleared value where nothing casts.
     pub(in crate::technique) depth: f64,
+    /// What the depth would be without the rasteriser's bias.
+    pub(in crate::technique) unbiased_depth: f64,
     /// The triangle it came from.
     pub(in crate::technique) triangle: Option<u32>,
 }
@@ -49,13 +51,19 @@ fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) ->
     let mut hits = Vec::new();
     casters.all_hits(&Segment { from, to }, None, &mut hits);
     let cleared = if lookup.frustum.reversed { 0.0 } else { 1.0 };
-    let stored = hits.iter().map(|hit| {
+    let mut texel = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
+    let is_nearer = |a: f64, b: f64| lookup.frustum.depth_sign() * (a - b) < 0.0;
+    for hit in hits {
         let in_map = lookup.frustum.project(from.lerp(to, hit.t));
-        let biased = in_map.z / in_map.w + lookup.hardware_bias(scene.triangle_in_world(hit.triangle));
-        ExactTexel { depth: biased.clamp(0.0, 1.0), triangle: Some(hit.triangle) }
-    });
-    let nearer = |a: &ExactTexel, b: &ExactTexel| {
-        (lookup.frustum.depth_sign() * a.depth).total_cmp(&(lookup.frustum.depth_sign() * b.depth))
-    };
-    stored.min_by(nearer).unwrap_or(ExactTexel { depth: cleared, triangle: None })
+        let unbiased_depth = (in_map.z / in_map.w).clamp(0.0, 1.0);
+        let bias = lookup.hardware_bias(scene.triangle_in_world(hit.triangle));
+        let depth = (in_map.z / in_map.w + bias).clamp(0.0, 1.0);
+        if texel.triangle.is_none() || is_nearer(depth, texel.depth) {
+            texel = ExactTexel { depth, triangle: Some(hit.triangle), ..texel };
+        }
+        if is_nearer(unbiased_depth, texel.unbiased_depth) {
+            texel.unbiased_depth = unbiased_depth;
+        }
+    }
+    texel
 }

@@ -59,6 +59,14 @@ pub struct Placed {
     pub reference: f64,
 }
 
+impl Placed {
+    /// The texel that holds the point.
+    #[must_use]
+    pub fn own_texel(&self) -> IVec2 {
+        self.position_in_texels.floor().as_ivec2()
+    }
+}
+
 impl Lookup {
     /// For one frustum and light.
     #[must_use]
@@ -70,6 +78,12 @@ impl Lookup {
             light: light.homogeneous(),
             frustum,
         }
+    }
+
+    /// The same lookup with no bias at all.
+    #[must_use]
+    pub fn without_bias(&self) -> Self {
+        Self { bias: Amounts::NONE, ..self.clone() }
     }
 
     /// Places a receiver.

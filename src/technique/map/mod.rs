@@ -12,6 +12,7 @@ mod depth_format;
 mod exact_texels;
 pub mod filter;
 mod lookup;
+mod lookup_facts;
 mod own_surface;
 mod passes;
 mod prepared;

@@ -98,7 +98,7 @@ impl Prepared for PreparedMap<'_> {
     }
 
     fn lookup_facts(&self, pixel: u32) -> Result<Vec<(String, String)>, TechniqueError> {
-        super::replay::lookup_facts(self, pixel)
+        super::lookup_facts::lookup_facts(self, pixel)
     }
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {

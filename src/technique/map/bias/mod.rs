@@ -58,6 +58,19 @@ pub struct Amounts {
     pub normal_texels: f64,
 }
 
+impl Amounts {
+    /// No bias at all.
+    pub const NONE: Self = Self {
+        constant_units: 0,
+        slope: 0.0,
+        clamp: 0.0,
+        closed_form_kernel: 0.0,
+        cap_texels: 0.0,
+        depth_m: 0.0,
+        normal_texels: 0.0,
+    };
+}
+
 impl Numbers {
     /// The amounts typed, with these in place of `auto` for the rasteriser, and no closed form.
     fn amounts_with(&self, auto_units: f64, auto_slope: f64) -> Amounts {
