@@ -166,11 +166,11 @@ fn row(param: &Param) -> String {
 #[test]
 fn a_techniques_page_lists_its_parameters_as_declared() {
     for technique in registry() {
-        let page = doc(&format!("{}.md", technique.id()));
+        let page = doc(&format!("{}.md", technique.id().replace('-', "_")));
         let table = page.split("## Parameters").nth(1).unwrap();
         let found: Vec<&str> = table.lines().filter(|line| line.starts_with("| `")).collect();
         let declared: Vec<String> = technique.params().iter().map(row).collect();
-        assert_eq!(found, declared, "the table of docs/{}.md should read\n{}", technique.id(), declared.join("\n"));
+        assert_eq!(found, declared, "the table of the page of {} should read\n{}", technique.id(), declared.join("\n"));
     }
 }
 
@@ -210,7 +210,9 @@ fn is_broken((file, cited): (&str, Option<&str>)) -> bool {
 fn every_formula_that_is_cited_exists() {
     let shaders = files_below(&root().join("shaders"), "wgsl");
     let pages = files_below(&root().join("docs"), "md");
-    let in_code = sources().into_iter().chain(shaders).map(|(path, text)| (path, text, "docs/"));
+    let front = ["README.md", "ARCHITECTURE.md"];
+    let front = front.map(|name| (name.to_owned(), std::fs::read_to_string(root().join(name)).unwrap()));
+    let in_code = sources().into_iter().chain(shaders).chain(front).map(|(path, text)| (path, text, "docs/"));
     let in_pages = pages.into_iter().map(|(path, text)| (path, text, "]("));
     let mut seen = 0;
     for (path, text, prefix) in in_code.chain(in_pages) {

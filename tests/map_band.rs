@@ -16,17 +16,11 @@ use gnomon::technique::map::Settings;
 use gnomon::technique::{Job, Spec};
 use gnomon::watch::Unwatched;
 use std::collections::BTreeSet;
-use std::f64::consts::FRAC_1_SQRT_2;
 use std::fs;
-use support::outline::{MappedOutline, mesh};
+use support::outline::{MappedOutline, band_texels, mesh};
 use support::scenes::{ask, explained, folder_of, gpu, judged, shipped, written};
 
 const SIZE: [u32; 2] = [320, 240];
-/// A kernel of n reads texels whose centres lie at most n/2 away along each axis: n times this along the diagonal.
-const BAND_PER_KERNEL_TEXELS: f64 = FRAC_1_SQRT_2;
-/// Rasterisers snap the blocker's corners to 1/256 texel or finer along each axis, and f32 rounds the receiver's place
-/// in a map of 4096 texels by less than a thousandth.
-const RASTER_SLACK_TEXELS: f64 = 1.0 / 128.0;
 
 /// `scenes/triangle` with a spot light beside its lamp and its sun.
 fn three_lights(size: [u32; 2]) -> Scene {
@@ -60,11 +54,6 @@ fn errors_in_texels(view: &View<'_>, light: &str, evaluation: &Evaluation<'_>, t
 
 fn farthest(distances: &[f64]) -> f64 {
     distances.iter().copied().fold(0.0, f64::max)
-}
-
-/// The band of a filter, with what the rasteriser adds.
-fn band_texels(kernel: f64) -> f64 {
-    BAND_PER_KERNEL_TEXELS * kernel + RASTER_SLACK_TEXELS
 }
 
 #[test]

@@ -14,8 +14,7 @@ use gnomon::technique::map::{Lookup, Placed};
 use gnomon::truth;
 use gnomon::verdict::{WRONG_ABOVE_HARD, judge};
 use gnomon::watch::Unwatched;
-use std::f64::consts::FRAC_1_SQRT_2;
-use support::outline::{MappedOutline, mesh};
+use support::outline::{MappedOutline, band_texels, mesh};
 use support::scenes::{as_mask, ask, explained, gpu, judged, shadowed, shipped, verdict_on};
 
 /// Square, so that its axes can be swapped.
@@ -43,6 +42,9 @@ fn rearranged(mask: &Mask, from: impl Fn(u32, u32) -> (u32, u32)) -> Mask {
     Mask { size: mask.size, pixels: pixels.collect() }
 }
 
+/// Where a pixel's answer is taken from.
+type Source = fn(u32, u32) -> (u32, u32);
+
 #[test]
 fn a_mask_in_the_wrong_place_fails() {
     let gpu = gpu();
@@ -53,7 +55,7 @@ fn a_mask_in_the_wrong_place_fails() {
         let mask = judged(&view, &question, SPEC).mask;
         assert!(passes(&scene, &question, &mask), "{light}");
         assert!(passes(&scene, &question, &rearranged(&mask, |x, y| (x, y))), "{light}");
-        let shifts: [fn(u32, u32) -> (u32, u32); 4] =
+        let shifts: [Source; 4] =
             [|x, y| (x + 1, y), |x, y| (x.saturating_sub(1), y), |x, y| (x, y + 1), |x, y| (x, y.saturating_sub(1))];
         for shift in shifts {
             assert!(!passes(&scene, &question, &rearranged(&mask, shift)), "{light}: shifted");
@@ -87,7 +89,9 @@ fn no_bias_fails() {
     let view = View::new(&gpu, &scene).unwrap();
     for light in ["lamp", "sun"] {
         let question = ask(&view, light);
-        assert!(!passes(&scene, &question, &judged(&view, &question, &format!("{SPEC},bias=none")).mask), "{light}");
+        let mask = |bias: &str| judged(&view, &question, &format!("{SPEC},bias={bias}")).mask;
+        assert!(passes(&scene, &question, &mask("closed-form")), "{light}");
+        assert!(!passes(&scene, &question, &mask("none")), "{light}");
     }
 }
 
@@ -112,13 +116,13 @@ fn truth_of_other(view: &View<'_>, question: &Question<'_>, other: &Scene) -> Tr
     truth::exact(other, &Casters::new(other), light, receivers, classes, &Unwatched).unwrap().mask
 }
 
-/// The finer check of a map's errors: each wrong pixel lies within half a texel of the edge, and 1/128 for the rasteriser.
+/// The finer check of a map's errors: each wrong pixel lies within half a texel's diagonal of the edge.
 fn errs_at_the_edge_only(view: &View<'_>, question: &Question<'_>, truth: &TruthMask, mask: &Mask) -> bool {
     let verdict = judge(&question.classes, truth, mask, WRONG_ABOVE_HARD).unwrap();
     let mapped = MappedOutline::new(view.scene, question.light, SPEC);
     let wrong = (0..mask.pixels.len()).filter(|pixel| verdict.is_wrong(*pixel));
     let mut wrong = wrong.filter_map(|pixel| view.receivers.pixels[pixel]);
-    wrong.all(|receiver| mapped.texels_from_edge(receiver.point_in_world) <= FRAC_1_SQRT_2 + 1.0 / 128.0)
+    wrong.all(|receiver| mapped.texels_from_edge(receiver.point_in_world) <= band_texels(1.0))
 }
 
 #[test]

@@ -5,7 +5,7 @@
 mod support;
 
 use gnomon::gpu::shader::{GBUFFER, Wgsl, concatenated};
-use gnomon::technique::map;
+use gnomon::technique::shader_modules;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,7 +13,7 @@ use support::files::files_below;
 
 /// Every module gnomon can build, as label and files.
 fn modules() -> Vec<(String, Vec<Wgsl>)> {
-    std::iter::once(("gbuffer".to_owned(), vec![GBUFFER])).chain(map::shader_modules()).collect()
+    std::iter::once(("gbuffer".to_owned(), vec![GBUFFER])).chain(shader_modules()).collect()
 }
 
 /// Parses and validates one module as WebGPU without optional features would.

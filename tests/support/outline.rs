@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use gnomon::scene::{Light, Mesh, Scene};
 use gnomon::technique::Spec;
 use gnomon::technique::map::{Lookup, Settings};
+use std::f64::consts::SQRT_2;
 
 /// A triangle, wound either way.
 #[derive(Debug, Clone)]
@@ -104,6 +105,15 @@ impl MappedOutline {
     pub(crate) fn texels_from_edge(&self, point_in_world: DVec3) -> f64 {
         self.outline.distance(self.lookup.project(point_in_world).unwrap().0)
     }
+}
+
+/// How far from the true edge, in texels, a filter of `kernel` texels a side may err.
+///
+/// It reads texels whose centres lie at most half its width away along each axis. Vulkan lets rasterisers snap corners to
+/// a grid of 1/16 texel, so by half of that along each axis; and f32 rounds a receiver's place in a map of 4096 texels by
+/// less than a thousandth.
+pub(crate) fn band_texels(kernel: f64) -> f64 {
+    0.5 * SQRT_2 * kernel + SQRT_2 / 32.0 + 1e-3
 }
 
 /// Both ends of every side of every triangle of a scene.

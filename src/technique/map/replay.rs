@@ -102,7 +102,7 @@ impl<'r> Replayer<'r> {
             [Step { value: biased, cause }, sampling, self.filter(&receiver, &placed, sampling.value)]
         });
         let precision = |value: f64| Step { value, cause: Cause::Precision };
-        let stored_texels = precision(placed.map_or(1.0, |placed| self.with_stored_depths(&placed)));
+        let stored_texels = precision(placed.map_or(1.0, |placed| self.by_stored_texels(&placed)));
         Some((exact, [coverage, bias, sampling, filter, stored_texels, precision(answered)]))
     }
 
@@ -183,7 +183,7 @@ impl<'r> Replayer<'r> {
     }
 
     /// The filter's answer with the depths that the GPU holds.
-    fn with_stored_depths(&self, placed: &Placed) -> f64 {
+    fn by_stored_texels(&self, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let mut value = 0.0;
         each_tap(self.map, placed, &mut |texel, weight| {

@@ -112,10 +112,10 @@ impl<'j> PreparedVolume<'j> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
     }
 
-    /// The stencil that the same volumes leave when it wraps.
-    pub(super) fn wrapped_stencil(&self) -> Result<Vec<u8>, TechniqueError> {
-        let wrapping = Settings { clamps_stencil: false, ..self.settings };
-        let passes = VolumePasses::new(&self.job, &wrapping, &self.eye, &self.volumes, &self.receivers)?;
+    /// The stencil that other settings leave for the same question.
+    pub(super) fn stencil_under(&self, settings: &Settings) -> Result<Vec<u8>, TechniqueError> {
+        let volumes = Volumes::new(self.job.scene, self.job.light, settings, &self.eye);
+        let passes = VolumePasses::new(&self.job, settings, &self.eye, &volumes, &self.receivers)?;
         passes.run(self.job.gpu, &self.receivers)?;
         Ok(passes.stencil(self.job.gpu)?)
     }

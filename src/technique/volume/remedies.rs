@@ -13,14 +13,10 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::StencilOverflow => {
             &[("stencil_ops", "wrap"), ("caster_sides", "auto"), ("shape", "silhouette"), ("count", "z-fail")]
         }
-        Cause::Precision => &[
-            ("cap_compare", "strict"),
-            ("caps", "auto"),
-            ("back_cap", "reversed-facing"),
-            ("depth_convention", "reversed"),
-            ("format", "depth32float-stencil8"),
-            ("count", "z-fail"),
-        ],
+        Cause::TechniqueModel => &[("cap_compare", "strict"), ("caps", "auto"), ("back_cap", "reversed-facing")],
+        Cause::Precision => {
+            &[("depth_convention", "reversed"), ("format", "depth32float-stencil8"), ("count", "z-fail")]
+        }
         Cause::EdgeAliasing
         | Cause::PerspectiveAliasing
         | Cause::ProjectiveAliasing
@@ -31,8 +27,7 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         | Cause::AntiShadow
         | Cause::FalseShadowBehindPlane
         | Cause::FilterWidth
-        | Cause::LightBleeding
-        | Cause::TechniqueModel => &[],
+        | Cause::LightBleeding => &[],
     };
     let changed = changes.iter().filter_map(|(key, value)| spec.with(key, value).ok());
     changed.filter(|changed| changed != spec).collect()
@@ -48,7 +43,7 @@ mod tests {
         for cause in Cause::ALL {
             assert!(remedies(&spec, cause).iter().all(|remedy| *remedy != spec));
         }
-        assert_eq!(remedies(&spec, Cause::Precision)[0].short(), "volume:count=z-pass");
+        assert_eq!(remedies(&spec, Cause::TechniqueModel)[0].short(), "volume:count=z-pass");
         assert!(remedies(&Spec::parse("volume").unwrap(), Cause::OpenMesh).len() == 1);
     }
 }

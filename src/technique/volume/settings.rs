@@ -149,6 +149,21 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// The same volumes closed and compared as they must be; `None` if they already are.
+    #[must_use]
+    pub fn with_sound_caps(&self) -> Option<Self> {
+        let sound = Self { caps: Caps::Auto, inclusive_compare: false, away_facing_back_cap: false, ..*self };
+        (sound != *self).then_some(sound)
+    }
+
+    /// The same volumes counted by a stencil that wraps; `None` if it does.
+    #[must_use]
+    pub fn with_wrapping_stencil(&self) -> Option<Self> {
+        self.clamps_stencil.then_some(Self { clamps_stencil: false, ..*self })
+    }
+}
+
 impl Length {
     /// The typed length, or `auto_m`.
     #[must_use]
