@@ -5,7 +5,7 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 use glam::UVec2;
-use gnomon::evaluate::{Effort, View, diagnose, evaluate, search_bias};
+use gnomon::evaluate::{Effort, Trials, View, diagnose, evaluate, search_bias};
 use gnomon::gpu::Gpu;
 use gnomon::receiver::PixelClass;
 use gnomon::scene::{LoadOptions, Scene, load};
@@ -91,7 +91,8 @@ fn diagnosed(gpu: &Gpu, name: &str, spec: &Spec) -> Done {
     let view = View::new(gpu, &scene)?;
     let question = view.ask(scene.light(LIGHT).ok_or("no such light")?, &Unwatched)?;
     let evaluation = evaluate(&view, &question, spec, Effort { timed_runs: 1, explains: true }, &Unwatched)?;
-    black_box(diagnose(&view, &question, spec, &evaluation, &Unwatched)?.len());
-    black_box(search_bias(&view, &question, spec, &Unwatched)?.is_some());
+    let mut trials = Trials::new(&view, &question);
+    black_box(diagnose(&mut trials, spec, &evaluation, &Unwatched)?.len());
+    black_box(search_bias(&mut trials, spec, &Unwatched)?.is_some());
     Ok(())
 }

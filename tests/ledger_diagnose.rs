@@ -6,7 +6,7 @@
 mod support;
 
 use gnomon::cause::Cause;
-use gnomon::evaluate::{Evaluation, Outcome, diagnose, search_bias};
+use gnomon::evaluate::{Evaluation, Outcome, Trials, diagnose, search_bias};
 use gnomon::receiver::PixelClass;
 use gnomon::scene::Shading;
 use gnomon::shade::terminator;
@@ -17,7 +17,8 @@ use support::shot::{Shot, named, parsed};
 const SIZE: [u32; 2] = [200, 150];
 
 fn diagnoses(shot: &Shot<'_>, typed: &str, evaluation: &Evaluation<'_>) -> Vec<gnomon::evaluate::Diagnosis> {
-    diagnose(&shot.view, &shot.question, &parsed(typed), evaluation, &Unwatched).expect("nobody stops it")
+    diagnose(&mut Trials::new(&shot.view, &shot.question), &parsed(typed), evaluation, &Unwatched)
+        .expect("nobody stops it")
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn a_coarse_map_at_a_contact_has_no_bias_that_clears_both() {
     let scene = shipped("contact", SIZE);
     let shot = Shot::new(&scene, "sun");
     let searched = |typed: &str| {
-        let verdict = search_bias(&shot.view, &shot.question, &parsed(typed), &Unwatched);
+        let verdict = search_bias(&mut Trials::new(&shot.view, &shot.question), &parsed(typed), &Unwatched);
         verdict.expect("nobody stops it").expect("maps have a bias")
     };
     let coarse = searched("map:size=32");

@@ -6,7 +6,9 @@ use super::context::{lights, load, open_gpu};
 use super::exit;
 use super::terminal::{Terminal, say};
 use crate::cause::Cause;
-use crate::evaluate::{BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias};
+use crate::evaluate::{
+    BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, Trials, View, diagnose, evaluate, search_bias,
+};
 use crate::technique::{Spec, TechniqueError};
 
 /// Timed runs of the configuration as it is, like those of a trial.
@@ -34,14 +36,15 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
         let before = Outcome::of(&evaluation);
         let asked = evaluation.verdict.pixels.asked;
         say(&format!("  {} of {asked} asked pixels are wrong\n", before.wrong));
-        let diagnoses = diagnose(&view, &question, &spec, &evaluation, terminal)?;
+        let mut trials = Trials::new(&view, &question);
+        let diagnoses = diagnose(&mut trials, &spec, &evaluation, terminal)?;
         terminal.finish();
         for diagnosis in &diagnoses {
             say(&described(subject(&spec), diagnosis, &before));
         }
         let is_bias = |d: &Diagnosis| matches!(d.cause, Cause::Acne | Cause::Curvature | Cause::PeterPanning);
         if diagnoses.iter().any(is_bias) {
-            let found = search_bias(&view, &question, &spec, terminal)?;
+            let found = search_bias(&mut trials, &spec, terminal)?;
             terminal.finish();
             found.iter().for_each(|verdict| say(&bias_verdict(verdict)));
         }

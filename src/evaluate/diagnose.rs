@@ -74,36 +74,62 @@ fn by_cause(ledger: &Ledger) -> BTreeMap<Cause, u64> {
     ledger.causes.iter().filter(|(_, share)| share.pixels > 0).map(|(cause, share)| (*cause, share.pixels)).collect()
 }
 
+/// Variants of one question's evaluation, each evaluated once however often it is asked for.
+#[derive(Debug)]
+pub struct Trials<'t> {
+    view: &'t View<'t>,
+    question: &'t Question<'t>,
+    known: Vec<(Spec, Result<Outcome, String>)>,
+}
+
+impl<'t> Trials<'t> {
+    /// None yet.
+    #[must_use]
+    pub fn new(view: &'t View<'_>, question: &'t Question<'t>) -> Self {
+        Self { view, question, known: Vec::new() }
+    }
+
+    /// What a specification comes to; a failure in words.
+    fn outcome(
+        &mut self,
+        spec: &Spec,
+        effort: Effort,
+        watch: &dyn Watch,
+    ) -> Result<Result<Outcome, String>, Interrupted> {
+        if let Some((_, outcome)) = self.known.iter().find(|(known, _)| known == spec) {
+            return Ok(outcome.clone());
+        }
+        let outcome = match evaluate(self.view, self.question, spec, effort, watch) {
+            Ok(evaluation) => Ok(Outcome::of(&evaluation)),
+            Err(EvaluateError::Interrupted(interrupted)) => return Err(interrupted),
+            Err(error) => Err(error.to_string()),
+        };
+        self.known.push((spec.clone(), outcome.clone()));
+        Ok(outcome)
+    }
+}
+
 /// Diagnoses an evaluation of `spec`: the causes present, the most frequent first.
 ///
 /// # Errors
 /// [`Interrupted`] if the user asked to stop; a fix that fails is part of the answer.
 pub fn diagnose(
-    view: &View<'_>,
-    question: &Question<'_>,
+    trials: &mut Trials<'_>,
     spec: &Spec,
     evaluation: &Evaluation<'_>,
     watch: &dyn Watch,
 ) -> Result<Vec<Diagnosis>, Interrupted> {
+    trials.known.push((spec.clone(), Ok(Outcome::of(evaluation))));
     let mut present: Vec<(Cause, u64)> = by_cause(&evaluation.ledger).into_iter().collect();
     present.sort_by_key(|(_, pixels)| std::cmp::Reverse(*pixels));
     let remedies = |cause| spec.technique().remedies(spec, cause).into_iter().take(TRIED_PER_CAUSE);
     watch.start("trying fixes", present.iter().map(|(cause, _)| remedies(*cause).count() as u64).sum());
-    // Two causes may share a fix: it is tried once.
-    let mut known: Vec<(Spec, Result<Outcome, String>)> = Vec::new();
     let mut diagnoses = Vec::new();
     for (cause, pixels) in present {
-        let mut trials = Vec::new();
+        let mut tried = Vec::new();
         for remedy in remedies(cause) {
-            let outcome = match known.iter().find(|(spec, _)| *spec == remedy) {
-                Some((_, outcome)) => outcome.clone(),
-                None => {
-                    let outcome = try_out(view, question, &remedy, watch)?;
-                    known.push((remedy.clone(), outcome.clone()));
-                    outcome
-                }
-            };
-            trials.push((remedy, outcome));
+            let outcome = trials.outcome(&remedy, TRIAL, watch)?;
+            tried.push((remedy, outcome));
             watch.advance(1);
         }
         diagnoses.push(Diagnosis {
@@ -112,23 +138,10 @@ pub fn diagnose(
             share: pixels as f64 / evaluation.verdict.pixels.wrong as f64,
             sum: evaluation.ledger.causes.get(&cause).map_or(0.0, |share| share.sum),
             worst: worst_pixels(evaluation, cause),
-            trials,
+            trials: tried,
         });
     }
     Ok(diagnoses)
-}
-
-fn try_out(
-    view: &View<'_>,
-    question: &Question<'_>,
-    spec: &Spec,
-    watch: &dyn Watch,
-) -> Result<Result<Outcome, String>, Interrupted> {
-    match evaluate(view, question, spec, TRIAL, watch) {
-        Ok(evaluation) => Ok(Ok(Outcome::of(&evaluation))),
-        Err(EvaluateError::Interrupted(interrupted)) => Err(interrupted),
-        Err(error) => Ok(Err(error.to_string())),
-    }
 }
 
 fn worst_pixels(evaluation: &Evaluation<'_>, cause: Cause) -> Vec<u32> {
@@ -147,8 +160,7 @@ fn worst_pixels(evaluation: &Evaluation<'_>, cause: Cause) -> Vec<u32> {
 /// # Errors
 /// [`Interrupted`] if the user asked to stop.
 pub fn search_bias(
-    view: &View<'_>,
-    question: &Question<'_>,
+    trials: &mut Trials<'_>,
     spec: &Spec,
     watch: &dyn Watch,
 ) -> Result<Option<BiasVerdict>, Interrupted> {
@@ -157,7 +169,7 @@ pub fn search_bias(
     let mut verdict = BiasVerdict { free_of_both: None, tried: Vec::new() };
     for candidate in candidates {
         watch.advance(1);
-        let Ok(outcome) = try_out(view, question, &candidate, watch)? else { continue };
+        let Ok(outcome) = trials.outcome(&candidate, Effort::CAUSES, watch)? else { continue };
         let self_shadow = outcome.of_cause(Cause::Acne) + outcome.of_cause(Cause::Curvature);
         let detached = outcome.of_cause(Cause::PeterPanning);
         if self_shadow == 0 && detached == 0 && verdict.free_of_both.is_none() {

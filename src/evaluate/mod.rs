@@ -8,7 +8,7 @@ mod diagnose;
 mod jitter;
 mod view;
 
-pub use diagnose::{BiasVerdict, Diagnosis, Outcome, diagnose, search_bias};
+pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
 pub use view::{Question, View};
 

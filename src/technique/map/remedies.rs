@@ -11,32 +11,33 @@ const CAP_FACTOR: f64 = 4.0;
 /// One knob changed in each; only changes that are legal and change anything.
 pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
     let size = spec.integer("size");
-    let larger = |factor: i64| ("size", (size * factor).min(LARGEST).to_string());
+    let larger = || ("size", (2 * size).min(LARGEST).to_string());
     let set = |key: &'static str, value: &str| (key, value.to_owned());
     let (_, kernel) = spec.choice("filter");
     let changes = match cause {
         // Acne in spite of the closed form: its cap holds it back.
         Cause::Acne if spec.choice("bias").0 == "closed-form" => {
-            vec![set("bias_cap_texels", &(CAP_FACTOR * spec.real("bias_cap_texels")).to_string()), larger(2)]
+            vec![set("bias_cap_texels", &(CAP_FACTOR * spec.real("bias_cap_texels")).to_string()), larger()]
         }
-        Cause::Acne => vec![set("bias", "closed-form"), set("bias", "slope"), larger(2)],
-        Cause::Curvature => vec![set("bias_normal_texels", "1"), larger(2), set("bias_slope", "4")],
+        Cause::Acne => vec![set("bias", "closed-form"), set("bias", "slope"), larger()],
+        Cause::Curvature => vec![set("bias_normal_texels", "1"), larger(), set("bias_slope", "4")],
         Cause::PeterPanning => vec![
             set("bias_depth_m", "0"),
             set("bias_normal_texels", "0"),
             set("bias_slope", "auto"),
             set("bias_constant_ulps", "auto"),
             set("bias", "closed-form"),
-            larger(2),
+            larger(),
             set("bias", "none"),
         ],
-        Cause::EdgeAliasing => vec![larger(2), larger(4)],
-        Cause::PerspectiveAliasing | Cause::ProjectiveAliasing => vec![larger(2), larger(4), set("fit", "receivers")],
+        Cause::EdgeAliasing | Cause::PerspectiveAliasing | Cause::ProjectiveAliasing => {
+            vec![larger(), set("fit", "receivers")]
+        }
         Cause::ClippingNear => vec![set("near_m", "auto"), set("pull_back_m", "auto"), set("fit", "scene")],
         Cause::ClippingFar => vec![set("far_m", "auto"), set("fit", "scene")],
         Cause::ClippingFrustum => vec![set("width_m", "auto"), set("fov_deg", "auto"), set("fit", "scene")],
-        Cause::FilterWidth if kernel > 1 => vec![larger(2), set("filter", "nearest")],
-        Cause::FilterWidth => vec![larger(2)],
+        Cause::FilterWidth if kernel > 1 => vec![larger(), set("filter", "nearest")],
+        Cause::FilterWidth => vec![larger()],
         Cause::Precision => {
             vec![set("format", "depth32float"), set("depth_convention", "reversed"), set("bias", "closed-form")]
         }
@@ -62,7 +63,8 @@ mod tests {
         for cause in Cause::ALL {
             assert!(remedies(&spec, cause).iter().all(|remedy| *remedy != spec));
         }
-        assert!(remedies(&spec, Cause::EdgeAliasing).is_empty(), "there is no larger map");
+        let sizes = remedies(&spec, Cause::EdgeAliasing).into_iter().map(|remedy| remedy.integer("size"));
+        assert!(sizes.eq([16_384]), "there is no larger map");
         assert_eq!(remedies(&spec, Cause::Acne)[0].short(), "map:size=16384");
         let capped = Spec::parse("map:bias_cap_texels=2").unwrap();
         assert_eq!(remedies(&capped, Cause::Acne)[0].short(), "map:bias_cap_texels=8");
