@@ -9,10 +9,6 @@ use crate::cause::Cause;
 use crate::evaluate::{BiasVerdict, Diagnosis, Effort, EvaluateError, Outcome, View, diagnose, evaluate, search_bias};
 use crate::technique::{Spec, TechniqueError};
 
-/// The biases compared when self-shadowing or detached contacts are present: parameter and value.
-const BIASES: [(&str, &str); 5] =
-    [("bias", "none"), ("bias_slope", "1"), ("bias_slope", "2"), ("bias_slope", "4"), ("bias", "closed-form")];
-
 /// Timed runs of the configuration as it is, like those of a trial.
 const EFFORT: Effort = Effort { timed_runs: 1, explains: true };
 
@@ -45,7 +41,7 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
         }
         let is_bias = |d: &Diagnosis| matches!(d.cause, Cause::Acne | Cause::Curvature | Cause::PeterPanning);
         if diagnoses.iter().any(is_bias) {
-            let found = search_bias(&view, &question, &spec, &BIASES, terminal)?;
+            let found = search_bias(&view, &question, &spec, terminal)?;
             terminal.finish();
             found.iter().for_each(|verdict| say(&bias_verdict(verdict)));
         }

@@ -3,7 +3,7 @@
 
 use super::{Effort, EvaluateError, Evaluation, Question, View, evaluate};
 use crate::cause::Cause;
-use crate::technique::{Cost, Spec};
+use crate::technique::{Cost, Spec, SpecError};
 use crate::verdict::Ledger;
 use crate::watch::{Interrupted, Watch};
 use std::collections::BTreeMap;
@@ -12,6 +12,9 @@ use std::collections::BTreeMap;
 const TRIED_PER_CAUSE: usize = 3;
 /// Worst pixels named per cause.
 const NAMED_PIXELS: usize = 3;
+/// The biases that a search compares, and the rasteriser's slope factor with each.
+const BIASES: [(&str, &str); 6] =
+    [("none", "auto"), ("slope", "0.5"), ("slope", "1"), ("slope", "2"), ("slope", "4"), ("closed-form", "auto")];
 /// Timed runs of a trial: enough for a ratio beside the counted work.
 const TRIAL: Effort = Effort { timed_runs: 1, explains: true };
 
@@ -138,8 +141,8 @@ fn worst_pixels(evaluation: &Evaluation<'_>, cause: Cause) -> Vec<u32> {
     pixels.into_iter().step_by(step).take(NAMED_PIXELS).collect()
 }
 
-/// Looks for a bias that is free of self-shadowing and of detached contacts, among the values that `changes` name
-/// (parameter and value each); `None` where the technique has no such parameter.
+/// Looks for a bias that is free of self-shadowing and of detached contacts: none, the rasteriser's slope with growing
+/// factors, the closed form, each in place of whatever bias `spec` has; `None` where the technique knows no bias.
 ///
 /// # Errors
 /// [`Interrupted`] if the user asked to stop.
@@ -147,10 +150,9 @@ pub fn search_bias(
     view: &View<'_>,
     question: &Question<'_>,
     spec: &Spec,
-    changes: &[(&str, &str)],
     watch: &dyn Watch,
 ) -> Result<Option<BiasVerdict>, Interrupted> {
-    let candidates: Vec<Spec> = changes.iter().filter_map(|(key, value)| spec.with(key, value).ok()).collect();
+    let candidates: Vec<Spec> = BIASES.into_iter().filter_map(|bias| with_bias(spec, bias).ok()).collect();
     watch.start("searching a bias", candidates.len() as u64);
     let mut verdict = BiasVerdict { free_of_both: None, tried: Vec::new() };
     for candidate in candidates {
@@ -164,4 +166,11 @@ pub fn search_bias(
         verdict.tried.push((candidate, self_shadow, detached));
     }
     Ok((!verdict.tried.is_empty()).then_some(verdict))
+}
+
+/// The specification with a bias and a slope factor in place of all that it says about bias.
+fn with_bias(spec: &Spec, (bias, slope): (&str, &str)) -> Result<Spec, SpecError> {
+    let rest = [("bias_constant_ulps", "auto"), ("bias_depth_m", "0"), ("bias_normal_texels", "0")];
+    let changes = [("bias", bias), ("bias_slope", slope)].into_iter().chain(rest);
+    changes.into_iter().try_fold(spec.clone(), |spec, (key, value)| spec.with(key, value))
 }
