@@ -19,6 +19,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 type Done = Result<(), Box<dyn Error>>;
+/// A command's work on the scene of that name.
+type Work = fn(&Gpu, &str, &Spec) -> Done;
 
 const SIZE: UVec2 = UVec2::splat(1024);
 const LIGHT: &str = "sun";
@@ -29,8 +31,7 @@ fn main() -> Done {
     let name = ["kitchen", "torus"].into_iter().find(|name| scene(name).is_ok()).ok_or("no scene")?;
     let spec = Spec::parse("map")?;
     let gpu = Gpu::open()?;
-    let works: [(&str, fn(&Gpu, &str, &Spec) -> Done); 3] =
-        [("check", check), ("explain", explain), ("diagnose", diagnosed)];
+    let works: [(&str, Work); 3] = [("check", check), ("explain", explain), ("diagnose", diagnosed)];
     let mut best = [Duration::MAX; 3];
     for _ in 0..ROUNDS {
         for ((_, work), best) in works.iter().zip(&mut best) {
