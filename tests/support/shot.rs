@@ -53,6 +53,11 @@ impl<'s> Shot<'s> {
         }
     }
 
+    /// Whether a technique answers for this light at all.
+    pub(crate) fn supports(&self, spec: &Spec) -> bool {
+        spec.technique().supports(spec, self.view.scene, self.question.light, &GPU).is_ok()
+    }
+
     /// The pixels that are asked and decided.
     pub(crate) fn asked(&self) -> Vec<u32> {
         let is_known = |truth: &Option<Truth>| matches!(truth, Some(Truth::Known(_)));

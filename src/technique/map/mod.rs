@@ -24,9 +24,9 @@ mod texel_footprint;
 
 pub use depth_format::DepthFormat;
 pub(in crate::technique) use exact_texels::ExactTexels;
-pub use lookup::{Lookup, Outside, Placed};
+pub use lookup::{Lookup, Outside, Placed, Tap};
 pub use passes::shader_modules;
-pub use settings::{Around, Fit, Settings};
+pub use settings::{Around, Border, CasterSides, Fit, NearMode, Seam, Settings};
 pub(in crate::technique) use texel_footprint::texel_footprint;
 
 use super::param::{Choice, Kind, Param, Value};
@@ -187,6 +187,36 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "largest closed-form bias at grazing light",
         ),
     ];
+    params.extend([
+        param(
+            "near_mode",
+            "",
+            plain(&["extend", "depth-clamp"]),
+            Value::Choice("extend", None),
+            "casters before the near plane: fit it before them, or draw them at it",
+        ),
+        param(
+            "caster_sides",
+            "",
+            plain(&["all", "light-facing", "away-facing"]),
+            Value::Choice("all", None),
+            "which sides of casters are drawn",
+        ),
+        param(
+            "seam",
+            "",
+            plain(&["per-tap", "clamp"]),
+            Value::Choice("per-tap", None),
+            "what a filter's tap beyond the side of its view reads: the view it falls in, or the nearest texel",
+        ),
+        param(
+            "border",
+            "",
+            plain(&["lit", "shadow", "clamp-edge"]),
+            Value::Choice("lit", None),
+            "what stands for the map beyond its border",
+        ),
+    ]);
     params.extend(fit_params());
     params
 });
