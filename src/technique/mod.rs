@@ -6,8 +6,6 @@
 //! [`registry`]. Tests, CLI and reports pick it up from there.
 
 mod cost;
-#[cfg(test)]
-mod faults;
 pub mod footprint;
 pub mod map;
 pub mod param;

@@ -1,11 +1,11 @@
 //! Faults planted in every shader file: each must be noticed, as pixels whose answer the f64 twin cannot explain. A
 //! check that a broken shader passes proves nothing, so a shader file without a fault here is a failure too.
 
-use super::{Spec, shader_modules};
+use super::{Effort, View, evaluate};
 use crate::cause::Cause;
-use crate::evaluate::{Effort, View, evaluate};
 use crate::gpu::Gpu;
 use crate::scene::{LoadOptions, Scene, load};
+use crate::technique::{Spec, shader_modules};
 use crate::watch::Unwatched;
 use glam::UVec2;
 use std::collections::BTreeSet;
