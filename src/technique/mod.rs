@@ -8,6 +8,7 @@
 mod cost;
 pub mod footprint;
 pub mod map;
+mod matrix;
 pub mod param;
 pub mod planar;
 pub mod projective_texture;
@@ -17,6 +18,7 @@ mod unsupported;
 pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
+pub use matrix::{MatrixRow, light_kinds, matrix};
 pub use receiver_buffer::ReceiverBuffer;
 pub use spec::{Spec, SpecError};
 pub use unsupported::Unsupported;
