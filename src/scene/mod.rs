@@ -8,6 +8,7 @@
 mod bare;
 mod build;
 mod camera;
+mod distance;
 mod error;
 pub mod file;
 mod folder;
@@ -18,6 +19,7 @@ mod source;
 
 pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
+pub use distance::distance_to_triangle;
 pub use error::{Place, SceneError};
 pub use file::SceneFile;
 pub use light::{Falloff, Light, LightKind, Segment};
