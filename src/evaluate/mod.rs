@@ -5,6 +5,8 @@
 
 mod cost;
 mod diagnose;
+#[cfg(test)]
+mod faults;
 mod jitter;
 mod view;
 
