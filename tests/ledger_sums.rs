@@ -16,7 +16,7 @@ const SIZE: UVec2 = UVec2::new(80, 60);
 
 /// Every axis, every format, filters of odd and even kernels, sizes far too small and of no power of two, every kind of
 /// bias alone and together, and frusta that cut.
-const SPECS: [&str; 29] = [
+const SPECS: [&str; 32] = [
     "map",
     "map:bias=none",
     "map:size=512,bias=constant",
@@ -26,6 +26,8 @@ const SPECS: [&str; 29] = [
     "map:size=700,filter=pcf-box3,bias=none",
     "map:filter=pcf-box5,bias=slope",
     "map:size=256,filter=pcf-box8",
+    "map:size=512,filter=pcf-bilinear",
+    "map:size=300,filter=pcf-poisson",
     "map:depth_convention=forward,bias=slope",
     "map:size=512,format=depth16unorm,bias=none",
     "map:format=depth16unorm,depth_convention=forward,filter=pcf-box3",
@@ -39,6 +41,7 @@ const SPECS: [&str; 29] = [
     "map:fit=manual,filter=pcf-box3",
     "map:size=333,near_m=3,far_m=5,phase_u_texels=0.3",
     "map:near_m=0.7,near_mode=depth-clamp,filter=pcf-box3",
+    "map:near_mode=fragment-clamp,bias=slope,depth_convention=forward",
     "map:size=500,caster_sides=away-facing,bias=none",
     "map:size=300,caster_sides=light-facing",
     "map:fit=manual,border=shadow,filter=pcf-box4",

@@ -70,6 +70,8 @@ fn a_caster_before_the_near_plane_is_lost_or_drawn_at_it() {
     let fitted = shot.evaluate("map:size=300,near_mode=depth-clamp");
     let differences = extended.mask.pixels.iter().zip(&fitted.mask.pixels).filter(|(a, b)| a != b).count();
     assert_eq!(differences, 0, "extended and clamped answer alike");
+    let by_fragments = shot.evaluate("map:size=300,near_mode=fragment-clamp");
+    assert!(by_fragments.mask == fitted.mask, "whoever clamps");
 }
 
 /// What the light reaches has no sample of its own when only the other sides are drawn.

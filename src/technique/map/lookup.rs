@@ -164,8 +164,7 @@ impl Lookup {
     #[must_use]
     pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
         let site = self.views[view].site(point_in_world);
-        let is_drawn =
-            site.at.q > 0.0 && (self.near_mode == NearMode::DepthClamp || (0.0..=1.0).contains(&site.at.depth));
+        let is_drawn = site.at.q > 0.0 && (self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&site.at.depth));
         is_drawn.then_some(site.at.depth)
     }
 

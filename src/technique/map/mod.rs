@@ -60,6 +60,10 @@ impl Technique for Map {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
             return Err(Unsupported::MissingFeature { what });
         }
+        if settings.near_mode == NearMode::DepthClamp && !gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL) {
+            let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
+            return Err(Unsupported::MissingFeature { what });
+        }
         settings.projection.supports(scene, light, &settings)
     }
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
@@ -191,9 +195,9 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
         param(
             "near_mode",
             "",
-            plain(&["extend", "depth-clamp"]),
+            plain(&["extend", "depth-clamp", "fragment-clamp"]),
             Value::Choice("extend", None),
-            "casters before the near plane: fit it before them, or draw them at it",
+            "casters before the near plane: fit it before them, or draw them at it, by the device or by each fragment",
         ),
         param(
             "caster_sides",

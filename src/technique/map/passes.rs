@@ -11,7 +11,7 @@ use glam::Mat4;
 use projection::{GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
-    DepthStencilState, Face, Features, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
+    DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
     RenderPipeline, StoreOp, Texture, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
@@ -203,7 +203,7 @@ fn all_layers(map: &Texture) -> TextureView {
 fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
     let mut pipelines: Vec<(Raster, RenderPipeline)> = Vec::new();
     let layer = |(index, view): (u32, &View)| {
-        let raster = Raster::of(gpu, settings, lookup, view);
+        let raster = Raster::of(settings, lookup, view);
         let known = pipelines.iter().find(|(known, _)| *known == raster).map(|(_, pipeline)| pipeline.clone());
         let pipeline = known.unwrap_or_else(|| {
             let built = raster.pipeline(gpu, settings, lookup);
@@ -242,7 +242,7 @@ fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUn
         bias_slope: lookup.bias.slope as f32,
         bias_clamp: lookup.bias.clamp as f32,
         depth_sign: view.depth_sign as f32,
-        clamps: u32::from(settings.near_mode == NearMode::DepthClamp),
+        clamps: u32::from(settings.near_mode != NearMode::Extend),
         padding: [0; 2],
     }
 }
@@ -257,12 +257,11 @@ struct Raster {
 }
 
 impl Raster {
-    fn of(gpu: &Gpu, settings: &Settings, lookup: &Lookup, view: &View) -> Self {
-        let cannot_clamp = settings.near_mode == NearMode::DepthClamp && !gpu.has(Features::DEPTH_CLIP_CONTROL);
+    fn of(settings: &Settings, lookup: &Lookup, view: &View) -> Self {
         Self {
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: cannot_clamp || view.rows.depth_q != view.rows.q,
+            writes_depth: settings.near_mode == NearMode::FragmentClamp || view.rows.depth_q != view.rows.q,
         }
     }
 

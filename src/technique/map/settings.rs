@@ -41,6 +41,8 @@ pub enum NearMode {
     Extend,
     /// They are drawn at the near plane, which is fitted to the receivers.
     DepthClamp,
+    /// The same, but fragments clamp their depth: for devices that cannot.
+    FragmentClamp,
 }
 
 /// Which sides of casters are drawn.
@@ -153,10 +155,10 @@ impl Settings {
                 cap_texels: spec.real("bias_cap_texels"),
             },
             fit: Fit::of(spec),
-            near_mode: if spec.choice("near_mode").0 == "depth-clamp" {
-                NearMode::DepthClamp
-            } else {
-                NearMode::Extend
+            near_mode: match spec.choice("near_mode").0 {
+                "depth-clamp" => NearMode::DepthClamp,
+                "fragment-clamp" => NearMode::FragmentClamp,
+                _ => NearMode::Extend,
             },
             caster_sides: match spec.choice("caster_sides").0 {
                 "light-facing" => CasterSides::LightFacing,

@@ -7,7 +7,7 @@
 use super::fit::{Reach, look_with_up};
 use super::{LightFrustum, Projection, Shape, Shares, View, Window};
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, Scene};
 use crate::technique::Unsupported;
 use crate::technique::map::settings::{Around, Settings};
 use glam::{DMat3, DMat4, DVec3, UVec2};
@@ -102,12 +102,11 @@ impl Projection for Cube {
 }
 
 fn position(light: &Light) -> Result<DVec3, Unsupported> {
-    match light.kind {
-        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => Ok(position.as_dvec3()),
-        LightKind::Directional { .. } => {
-            Err(Unsupported::Light { kind: light.kind_name(), handled: "point and spot lights" })
-        }
+    let homogeneous = light.homogeneous();
+    if homogeneous.w == 0.0 {
+        return Err(Unsupported::Light { kind: light.kind_name(), handled: "lights with a position" });
     }
+    Ok(homogeneous.truncate())
 }
 
 /// The axis of the face that a direction falls in; the first of several.
