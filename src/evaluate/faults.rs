@@ -22,6 +22,8 @@ const FAULTS: &[Fault] = &[
     ("map/lookup.wgsl", "lookup.depth_sign * bias_depth", "-lookup.depth_sign * bias_depth", "map"),
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
+    ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),
+    ("map/filter/pcf_poisson.wgsl", "RADIUS_TEXELS / 1024.0", "RADIUS_TEXELS / 900.0", "map:filter=pcf-poisson"),
     ("planar/shadow.wgsl", "vec4f(position, 1.0)", "vec4f(position, 1.01)", "planar"),
     ("projective_texture/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", PROJECTED),
     ("projective_texture/lookup.wgsl", "uv * lookup.texels", "uv.yx * lookup.texels", PROJECTED),
