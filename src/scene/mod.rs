@@ -8,6 +8,7 @@
 mod bare;
 mod build;
 mod camera;
+mod distance;
 mod emitter;
 mod error;
 pub mod file;
@@ -19,6 +20,7 @@ mod source;
 
 pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
+pub use distance::distance_to_triangle;
 pub use emitter::Emitter;
 pub use error::{Place, SceneError};
 pub use file::SceneFile;
