@@ -12,7 +12,7 @@ mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
-pub use view::{Question, View};
+pub use view::{Oracle, Question, View};
 
 use crate::cause::Replay;
 use crate::mask::{Mask, Truth, TruthMask};

@@ -7,8 +7,8 @@ use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DVec2, DVec3};
+use crate::technique::{Answer, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
+use glam::{DMat4, DVec2, DVec3, UVec2};
 
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
@@ -104,6 +104,20 @@ impl Prepared for PreparedMap<'_> {
         let receiver = self.receiver(pixel)?;
         let site = self.lookup.project(receiver.point_in_world).ok()?;
         texel_footprint(&self.job, &site, &receiver)
+    }
+
+    fn light_frusta(&self) -> Vec<DMat4> {
+        self.lookup.views.iter().map(|view| view.clip_from_world.as_dmat4()).collect()
+    }
+
+    fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
+        // Views below each other.
+        let size = self.lookup.texels() * UVec2::new(1, self.lookup.views.len() as u32);
+        let indices: Vec<u32> = (0..size.element_product()).collect();
+        let depths = self.passes.gather(self.job.gpu, &self.lookup, &indices)?;
+        // Cleared texels are exactly at one end of the range.
+        let drawn = |depth: f64| (depth > 0.0 && depth < 1.0).then_some(depth);
+        Ok(Some(LightDepths { size, depths: depths.into_iter().map(drawn).collect() }))
     }
 }
 
