@@ -7,6 +7,7 @@
 
 mod cost;
 pub mod footprint;
+pub mod irregular;
 pub mod map;
 pub mod param;
 pub mod planar;
@@ -36,14 +37,20 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture]
+    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture, &irregular::Irregular]
 }
 
 /// Every shader module that any technique can build, as label and files.
 #[must_use]
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
-    [map::shader_modules(), volume::shader_modules(), planar::shader_modules(), projective_texture::shader_modules()]
-        .concat()
+    [
+        map::shader_modules(),
+        volume::shader_modules(),
+        planar::shader_modules(),
+        projective_texture::shader_modules(),
+        irregular::shader_modules(),
+    ]
+    .concat()
 }
 
 /// A shadow technique.
