@@ -4,7 +4,8 @@
 
 use glam::{DVec3, UVec2, Vec3};
 use gnomon::scene::{
-    Falloff, Far, LightKind, LoadOptions, Placement, Scene, SceneFile, file::MeshEntry, load, scene_file_for_obj,
+    Falloff, Far, LightKind, LoadOptions, Placement, Scene, SceneFile, emission_normal, file::MeshEntry, load,
+    scene_file_for_obj,
 };
 use proptest::prelude::*;
 use std::{fs, path::Path};
@@ -151,6 +152,39 @@ position = [0, 1, 0]
 }
 
 #[test]
+fn area_lights_face_their_target() {
+    let more = r#"
+[[light]]
+kind = "rectangle"
+position = [0, 5, 0]
+target = [0, 0, 0]
+width = 2
+height = 1
+[[light]]
+kind = "rectangle"
+position = [5, 1, 0]
+target = [0, 1, 0]
+width = 2
+height = 1
+samples = 7
+[[light]]
+kind = "sphere"
+position = [0, 5, 0]
+radius = 0.25
+"#;
+    let scene = load_texts(&format!("{SCENE}{more}"), MODEL).unwrap();
+    for (index, forward) in [(1, DVec3::NEG_Y), (2, DVec3::NEG_X)] {
+        let LightKind::Rectangle { half_width, half_height, .. } = scene.lights[index].kind else { panic!() };
+        assert_eq!((half_width.length(), half_height.length()), (1.0, 0.5));
+        assert_eq!(emission_normal(half_width, half_height), forward);
+    }
+    let LightKind::Rectangle { half_height, samples, .. } = scene.lights[2].kind else { panic!() };
+    assert_eq!((half_height, samples), (Vec3::Y * 0.5, 7), "a rectangle that faces sideways stands upright");
+    let LightKind::Sphere { radius_m, samples, .. } = scene.lights[3].kind else { panic!() };
+    assert_eq!((radius_m, samples), (0.25, 64));
+}
+
+#[test]
 fn files_that_are_not_there_say_what_to_do() {
     let folder = TempDir::new().unwrap();
     let message = |path: &Path| load(path, &LoadOptions::default()).unwrap_err().to_string();
@@ -228,8 +262,16 @@ fn values_out_of_range_name_line_and_range() {
         ("[[light]]", "objects = [\"Flor\"]\n[[light]]", "scene.toml:8: unknown OBJ object `Flor`", "mean `Floor`?"),
         ("\"lamp\"", "\"\"", "scene.toml:9: light[0].name", "must not be empty"),
         ("\"lamp\"", "\"a/b\"", "scene.toml:9: light[0].name", "hold none of"),
-        ("\"point\"", "\"rectangle\"", "scene.toml:10: light[0].kind", "knows point, directional and spot"),
-        ("\"point\"", "\"sphere\"\nradius = 1", "scene.toml:10: light[0].kind", "knows point, directional and spot"),
+        ("\"point\"", "\"rectangle\"", "scene.toml:8: light[0].width is missing", "a rectangle light needs it"),
+        ("\"point\"", "\"rectangle\"\nwidth = -1", "scene.toml:11: light[0].width = -1", "1e-30 to 1e12 metres"),
+        ("\"point\"", "\"sphere\"\nradius = 0", "scene.toml:11: light[0].radius = 0", "1e-30 to 1e12 metres"),
+        (
+            "\"point\"",
+            "\"sphere\"\nwidth = 1",
+            "scene.toml:11: light[0].width",
+            "takes position, target, range, radius",
+        ),
+        ("\"point\"", "\"sphere\"\nradius = 1\nsamples = 0", "scene.toml:12: light[0].samples = 0", "1 to 4096"),
         ("\"point\"", "\"directional\"", "scene.toml:11: light[0].position", "takes direction: remove it"),
         ("\"point\"", "\"point\"\ncone_deg = 10", "scene.toml:11: light[0].cone_deg", "means nothing for a point"),
         ("\"point\"", "\"spot\"\ncone_deg = 180", "scene.toml:11: light[0].cone_deg = 180", "below 180"),

@@ -30,7 +30,9 @@ impl LightReport {
         let casting = || triangles(scene, true, false);
         let receiving = || triangles(scene, false, true);
         let (casters, receivers) = match light.kind {
-            LightKind::Point { position, .. } => {
+            LightKind::Point { position, .. }
+            | LightKind::Rectangle { position, .. }
+            | LightKind::Sphere { position, .. } => {
                 let from = position.as_dvec3();
                 (straight(from, casting()), straight(from, receiving()))
             }
@@ -70,7 +72,12 @@ fn parallel(along: DVec3, start: f64, triangles: impl Iterator<Item = [DVec3; 3]
 }
 
 fn half_angle_about_aim(light: &Light, receiving: impl Iterator<Item = [DVec3; 3]>) -> Option<f64> {
-    let LightKind::Point { position, aim, .. } = light.kind else { return None };
+    let (LightKind::Point { position, aim, .. }
+    | LightKind::Rectangle { position, aim, .. }
+    | LightKind::Sphere { position, aim, .. }) = light.kind
+    else {
+        return None;
+    };
     let from = position.as_dvec3();
     let axis = (aim.as_dvec3() - from).try_normalize()?;
     receiving.flatten().map(|corner| axis.angle_between(corner - from)).reduce(f64::max)

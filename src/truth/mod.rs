@@ -2,13 +2,15 @@
 //!
 //! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again.
 
+#[cfg(test)]
+mod area_tests;
 mod cross_check;
 mod exact;
 #[cfg(test)]
 mod tests;
 
 pub use cross_check::{Disagreement, cross_check};
-pub use exact::{ExactTruth, exact, of_receiver};
+pub use exact::{ExactTruth, exact, of_area, of_points, of_receiver};
 
 use crate::receiver::{PixelClass, Receiver, Receivers};
 
