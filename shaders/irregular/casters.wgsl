@@ -72,9 +72,17 @@ fn plane_side(receiver: Sample, a: vec3f, b: vec3f, c: vec3f) -> f32 {
 // line passes between them.
 fn edge_side(receiver: Sample, to_light: vec3f, start: vec3f, end: vec3f) -> f32 {
     if comes_before(end, start) {
-        return -dot(to_light, cross(from_receiver(receiver, end), start - end));
+        return -dot(to_light, cross(from_nearer_end(receiver, end), start - end));
     }
-    return dot(to_light, cross(from_receiver(receiver, start), end - start));
+    return dot(to_light, cross(from_nearer_end(receiver, start), end - start));
+}
+
+// From that end of the ray to a point which rounds least.
+fn from_nearer_end(receiver: Sample, point: vec3f) -> vec3f {
+    let offset = from_receiver(receiver, point);
+    let from_light = point - view.light.xyz;
+    let is_nearer_light = view.light.w != 0.0 && dot(from_light, from_light) < dot(offset, offset);
+    return select(offset, from_light, is_nearer_light);
 }
 
 // An order of points in space.

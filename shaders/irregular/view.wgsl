@@ -1,4 +1,4 @@
-// The light's grids, and where a point of the world lies in them. Twin of src/technique/irregular/grids.rs.
+// The light's grids, what lies in them, and where a point of the world does. Twin of src/technique/irregular/grids.rs.
 
 struct Face {
     x_axis: vec3f,
@@ -26,6 +26,25 @@ struct View {
     more_padding: vec2u,
 }
 @group(0) @binding(0) var<uniform> view: View;
+
+// A receiver. Twin of `GpuSample` in src/technique/irregular/samples.rs.
+struct Sample {
+    // The receiver's point is the sum of two, exact to 2^-48 of itself.
+    point_high: vec3f,
+    // The triangle that stands for its own surface.
+    own: u32,
+    point_low: vec3f,
+    face: u32,
+}
+
+// Cells of one face that a caster may cover.
+struct Rectangle {
+    triangle: u32,
+    face: u32,
+    // x + y * 65536 of the first and the last cell.
+    first: u32,
+    last: u32,
+}
 
 // What of f32's rounding can reach a place in a window, relative to the distance of what is placed.
 const ROUNDING: f32 = 3.8146973e-6; // 2^-18

@@ -5,7 +5,7 @@ use super::samples::GpuSample;
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Drawing, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, workgroups};
-use crate::technique::{Job, ReceiverBuffer, Unsupported};
+use crate::technique::{Job, ReceiverBuffer, TechniqueError, Unsupported};
 use glam::UVec2;
 use wgpu::{
     BindGroup, Buffer, BufferDescriptor, BufferUsages, Color, ColorTargetState, ColorWrites, ComputePass,
@@ -14,12 +14,10 @@ use wgpu::{
 };
 
 const VIEW: Wgsl = wgsl!("irregular/view.wgsl");
-const SAMPLE: Wgsl = wgsl!("irregular/sample.wgsl");
-const RECTANGLE: Wgsl = wgsl!("irregular/rectangle.wgsl");
 const CLEAR: [Wgsl; 1] = [wgsl!("irregular/clear.wgsl")];
-const INSERT: [Wgsl; 3] = [VIEW, SAMPLE, wgsl!("irregular/insert.wgsl")];
-const RECTANGLES: [Wgsl; 3] = [VIEW, RECTANGLE, wgsl!("irregular/rectangles.wgsl")];
-const CASTERS: [Wgsl; 4] = [VIEW, SAMPLE, RECTANGLE, wgsl!("irregular/casters.wgsl")];
+const INSERT: [Wgsl; 2] = [VIEW, wgsl!("irregular/insert.wgsl")];
+const RECTANGLES: [Wgsl; 2] = [VIEW, wgsl!("irregular/rectangles.wgsl")];
+const CASTERS: [Wgsl; 2] = [VIEW, wgsl!("irregular/casters.wgsl")];
 const RESOLVE: [Wgsl; 2] = [wgsl!("shared/receiver.wgsl"), wgsl!("irregular/resolve.wgsl")];
 
 /// Storage buffers that the fragment stage reads and writes, the most of any stage.
@@ -95,22 +93,18 @@ impl IrregularPasses {
         grids: &Grids,
         light_sides: &[i32],
         receivers: &ReceiverBuffer,
-    ) -> Result<Self, GpuError> {
+    ) -> Result<Self, TechniqueError> {
         let cells = grids.faces.len() * (grids.grid as usize).pow(2);
         let casting = light_sides.iter().filter(|side| **side != 0).count();
         let rectangle_bytes = (casting * grids.faces.len()).max(1) as u64 * RECTANGLE_BYTES;
-        let limit = job.gpu.limits().storage_binding_bytes;
         let heads_bytes = (cells.max(1) * size_of::<u32>()) as u64;
-        let corner_bytes = job.geometry.bytes();
-        for (what, asked) in
-            [("cells", heads_bytes), ("casters' rectangles", rectangle_bytes), ("casters", corner_bytes)]
-        {
-            if asked > limit {
-                let what = format!("the {what} of an irregular z-buffer in bytes");
-                return Err(GpuError::TooLarge { what, asked, limit });
-            }
+        let limit = job.gpu.limits().storage_binding_bytes;
+        let buffers = [("cells", heads_bytes), ("rectangles", rectangle_bytes), ("casters", job.geometry.bytes())];
+        if let Some((of, bytes)) = buffers.into_iter().find(|(_, bytes)| *bytes > limit) {
+            let what = format!("storage buffers of {bytes} bytes, which the {of} take (its limit is {limit})");
+            return Err(Unsupported::MissingFeature { what }.into());
         }
-        job.gpu.scoped("the irregular z-buffer's set-up", || {
+        let passes = job.gpu.scoped("the irregular z-buffer's set-up", || {
             let gpu = job.gpu;
             let [clear, insert, rectangles, resolve]: [ComputePipeline; 4] =
                 [("clear", &CLEAR[..]), ("insert", &INSERT), ("rectangles", &RECTANGLES), ("resolve", &RESOLVE)]
@@ -169,7 +163,8 @@ impl IrregularPasses {
                 cells,
                 bytes,
             }
-        })
+        })?;
+        Ok(passes)
     }
 
     /// Sorts receivers and casters into cells and answers every receiver.

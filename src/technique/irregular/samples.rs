@@ -6,7 +6,7 @@ use crate::cast::Casters;
 use crate::receiver::Receiver;
 use bytemuck::{Pod, Zeroable};
 
-/// `Sample` of `shaders/irregular/sample.wgsl`.
+/// `Sample` of `shaders/irregular/view.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub(super) struct GpuSample {
@@ -39,6 +39,6 @@ mod tests {
     #[test]
     fn samples_lie_as_the_shaders_read_them() {
         let in_rust = rust_layout!(GpuSample { point_high, own, point_low, face });
-        assert_eq!(wgsl_layout(&[wgsl!("irregular/sample.wgsl")], "Sample"), in_rust);
+        assert_eq!(wgsl_layout(&[wgsl!("irregular/view.wgsl")], "Sample"), in_rust);
     }
 }

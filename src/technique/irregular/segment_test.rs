@@ -66,11 +66,18 @@ pub(super) fn edge_sides(point: DVec3, light: DVec4, [a, b, c]: [DVec3; 3]) -> [
     let to_light = light.truncate() - light.w * point;
     [(a, b), (b, c), (c, a)].map(|(from, to)| {
         if comes_before(to, from) {
-            Bounded::triple(to_light, to - point, from - to).negated()
+            Bounded::triple(to_light, from_nearer_end(point, light, to), from - to).negated()
         } else {
-            Bounded::triple(to_light, from - point, to - from)
+            Bounded::triple(to_light, from_nearer_end(point, light, from), to - from)
         }
     })
+}
+
+/// From that end of the ray to a corner which rounds least.
+fn from_nearer_end(point: DVec3, light: DVec4, corner: DVec3) -> DVec3 {
+    let (offset, from_light) = (corner - point, corner - light.truncate());
+    let is_nearer_light = light.w != 0.0 && from_light.length_squared() < offset.length_squared();
+    if is_nearer_light { from_light } else { offset }
 }
 
 /// An order of points in space: both triangles at an edge work with the same numbers.
@@ -105,6 +112,13 @@ mod tests {
         }
         assert_eq!(crossing(DVec3::new(1e-4, 0.5, -1.0), sun, TRIANGLE, 1), Decision::Blocked);
         assert_eq!(crossing(DVec3::new(-1e-4, 0.5, -1.0), sun, TRIANGLE, 1), Decision::Clear);
+    }
+
+    #[test]
+    fn next_to_the_light_small_triangles_are_decided_too() {
+        let small = TRIANGLE.map(|corner| ABOVE.truncate() + 1e-6 * (corner - DVec3::new(0.25, 0.25, 1.0)));
+        assert_eq!(crossing(DVec3::new(0.2, 0.2, -5.0), ABOVE, small, 1), Decision::Blocked);
+        assert_eq!(crossing(DVec3::new(9.2, 0.2, -5.0), ABOVE, small, 1), Decision::Clear);
     }
 
     #[test]
