@@ -46,7 +46,8 @@ pub(super) enum Command {
     #[command(after_help = "Example:\n  gnomon scaffold models/teapot.obj")]
     Scaffold(ScaffoldArgs),
     /// List the scenes of a folder, or the techniques and their parameters
-    #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes")]
+    #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes\n  \
+        gnomon list --matrix")]
     List(ListArgs),
     /// Tell what this machine can do: adapters, features, limits, oracles, versions
     #[command(after_help = "Examples:\n  gnomon doctor\n  GNOMON_ADAPTER=1 gnomon doctor")]
@@ -174,7 +175,11 @@ pub(super) struct ScaffoldArgs {
 #[derive(Debug, Args)]
 pub(super) struct ListArgs {
     /// What to list
-    pub(super) what: Listed,
+    #[arg(required_unless_present = "matrix")]
+    pub(super) what: Option<Listed>,
+    /// Which technique handles which kind of light, and what it needs
+    #[arg(long, conflicts_with = "what")]
+    pub(super) matrix: bool,
     /// Folder to look for scenes in
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub(super) folder: PathBuf,

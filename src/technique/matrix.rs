@@ -164,6 +164,14 @@ fn lights(at: Vec3) -> Vec<Light> {
         LightKind::Point { position: at, aim: at - Vec3::Y, attenuation },
         LightKind::Directional { towards_light },
         LightKind::Spot { position: at, axis: Vec3::NEG_Y, outer_rad: 0.7, falloff, attenuation },
+        LightKind::Rectangle {
+            position: at,
+            aim: at - Vec3::Y,
+            half_width: 0.1 * Vec3::X,
+            half_height: 0.1 * Vec3::Z,
+            samples: 4,
+        },
+        LightKind::Sphere { position: at, aim: at - Vec3::Y, radius_m: 0.1, samples: 4 },
     ];
     let light = |kind| {
         let light = Light { name: String::new(), kind, intensity: Vec3::ONE, range_m: f64::INFINITY };
