@@ -13,6 +13,7 @@ mod matrix;
 pub mod param;
 pub mod planar;
 pub mod projective_texture;
+pub mod ray_query;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
@@ -39,7 +40,14 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture, &irregular::Irregular]
+    &[
+        &map::Map,
+        &volume::Volume,
+        &planar::Planar,
+        &projective_texture::ProjectiveTexture,
+        &irregular::Irregular,
+        &ray_query::RayQuery,
+    ]
 }
 
 /// Every shader module that any technique can build, as label and files.
@@ -51,6 +59,7 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         planar::shader_modules(),
         projective_texture::shader_modules(),
         irregular::shader_modules(),
+        ray_query::shader_modules(),
     ]
     .concat()
 }
@@ -65,6 +74,10 @@ pub trait Technique: Sync {
     fn citation(&self) -> &'static str;
     /// Its parameters, declared once.
     fn params(&self) -> &'static [Param];
+    /// What an adapter must have for it, in words, where not every adapter does.
+    fn needs_of_adapter(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Whether it can answer for this light in this scene on this adapter.
     ///
     /// # Errors
