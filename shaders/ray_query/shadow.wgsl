@@ -1,6 +1,6 @@
-enable wgpu_ray_query;
 // One shadow ray per receiver, walked through an acceleration structure by the device. This file comes first in its
 // module, because directives do.
+enable wgpu_ray_query;
 
 struct Light {
     // Homogeneous: w = 0 with a vector towards a directional light.

@@ -45,7 +45,7 @@ pub(super) enum Command {
     /// Write the scene file that gnomon makes around a bare OBJ, beside it
     #[command(after_help = "Example:\n  gnomon scaffold models/teapot.obj")]
     Scaffold(ScaffoldArgs),
-    /// List the scenes of a folder, or the techniques and their parameters
+    /// List the scenes of a folder, the techniques and their parameters, or the presets
     #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes\n  \
         gnomon list --matrix")]
     List(ListArgs),
@@ -189,6 +189,7 @@ pub(super) struct ListArgs {
 pub(super) enum Listed {
     Scenes,
     Techniques,
+    Presets,
 }
 
 fn size(typed: &str) -> Result<UVec2, String> {

@@ -12,6 +12,7 @@ pub mod map;
 mod matrix;
 pub mod param;
 pub mod planar;
+mod preset;
 pub mod projective_texture;
 pub mod ray_query;
 mod receiver_buffer;
@@ -21,6 +22,7 @@ pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
 pub use matrix::{MatrixRow, light_kinds, matrix};
+pub use preset::{PRESETS, Preset};
 pub use receiver_buffer::ReceiverBuffer;
 pub use spec::{Spec, SpecError};
 pub use unsupported::Unsupported;
