@@ -105,12 +105,14 @@ fn a_plain_scene_loads_with_its_defaults() {
 }
 
 #[test]
-fn the_near_plane_is_fitted_to_the_nearest_mesh() {
+fn the_near_plane_is_fitted_to_the_nearest_triangle() {
     let scene = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0, 6]"), MODEL).unwrap();
     // Nearest is the floor, whose edge is at z = 4.
     assert!((scene.camera.near_m - 2e-3).abs() < 1e-12);
-    let inside = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0.6, 0.1]"), MODEL).unwrap();
-    assert!((inside.camera.near_m - 8e-6).abs() < 1e-12, "1e-6 of the extent, 8 m");
+    let on_it = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0, 0.1]"), MODEL).unwrap();
+    assert!((on_it.camera.near_m - 8e-6).abs() < 1e-12, "1e-6 of the extent, 8 m");
+    let in_a_box = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0.6, 0.1]"), MODEL).unwrap();
+    assert!(in_a_box.camera.near_m > 1e-5, "a box is no surface");
 }
 
 #[test]

@@ -8,6 +8,7 @@
 mod bare;
 mod build;
 mod camera;
+mod distance;
 mod emitter;
 mod error;
 pub mod file;
@@ -15,15 +16,18 @@ mod folder;
 mod light;
 mod load;
 mod obj;
+mod projected;
 mod source;
 
 pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
+pub use distance::distance_to_triangle;
 pub use emitter::Emitter;
 pub use error::{Place, SceneError};
 pub use file::SceneFile;
 pub use light::{Falloff, Light, LightKind, Segment, emission_normal};
 pub use load::{LoadOptions, Placement, load};
+pub use projected::ProjectedTriangle;
 
 use glam::{DVec3, DVec4, UVec2, Vec3};
 use std::ops::Range;

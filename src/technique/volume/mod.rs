@@ -8,6 +8,7 @@
 //! the stencil counts (`stencil-overflow`). Formulas: docs/volume.md.
 
 mod assembly;
+mod boundary;
 mod casting;
 mod count;
 mod draws;
@@ -15,6 +16,7 @@ mod extrude;
 mod eye;
 mod facts;
 mod near_projection;
+mod outline;
 mod params;
 mod passes;
 mod pipelines;
