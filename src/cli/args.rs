@@ -86,6 +86,9 @@ pub(super) struct CheckArgs {
     /// Shift the light's texel grid N times by sub-texel steps; budgets then bind the mean
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub(super) jitter: u32,
+    /// Move the camera, then the light, by N quarter-pixel steps, and count the pixels that flip though the truth does not
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub(super) motion: u32,
     /// Write report.json and pictures here
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,

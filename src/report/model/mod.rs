@@ -9,7 +9,7 @@ mod run;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use figures::{BudgetOutcome, CauseEntry, Disagreements, Jitter, Spread, TruthSource};
+pub use figures::{BudgetOutcome, CauseEntry, Disagreements, Jitter, Motion, Spread, TruthSource};
 pub use run::{Question, Run, Status};
 
 use serde::Serialize;
