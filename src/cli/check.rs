@@ -2,7 +2,7 @@
 
 use super::args::CheckArgs;
 use super::command::Subject;
-use super::context::{load, open_gpu};
+use super::context::{ask, load, mitsuba_for, open_gpu};
 use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
@@ -27,6 +27,8 @@ struct Session<'a> {
     runs: Vec<Run>,
     /// For every run, the command that looks deeper into it.
     deeper: Vec<String>,
+    /// What else was found, in words.
+    notes: Vec<String>,
 }
 
 pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
@@ -39,7 +41,8 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let tasks: Vec<Vec<Task<'_>>> =
         scenes.iter().map(|(path, scene)| tasks(path, scene, &specs, args)).collect::<anyhow::Result<_>>()?;
     let gpu = open_gpu()?;
-    let mut session = Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new() };
+    let mut session =
+        Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new(), notes: Vec::new() };
     let ended = scenes.iter().zip(&tasks).try_for_each(|((path, scene), tasks)| {
         session.check_scene(path, scene, tasks).with_context(|| format!("scene '{}'", scene.name))
     });
@@ -57,8 +60,11 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
 impl Session<'_> {
     fn check_scene(&mut self, path: &Path, scene: &Scene, tasks: &[Task<'_>]) -> anyhow::Result<()> {
         let view = View::new(self.gpu, scene)?;
+        let mut mitsuba = mitsuba_for(self.args.oracle, &view)?;
         for of_light in tasks.chunk_by(|a, b| a.light.name == b.light.name) {
-            let question = view.ask(of_light[0].light, self.terminal)?;
+            let (light, oracle) = (of_light[0].light, self.args.oracle);
+            let question = ask(&view, light, oracle, mitsuba.as_mut(), self.terminal)?;
+            self.notes.extend(report::mitsuba_line(&question).map(|line| format!("{} / {line}", scene.name)));
             for task in of_light {
                 let subject =
                     Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
@@ -125,6 +131,9 @@ impl Session<'_> {
         let report = Report::new(report::adapter(self.gpu), std::mem::take(&mut self.runs));
         let written = self.out.as_ref().map_or_else(|| Ok(Vec::new()), |out| write(&report, exporters, out));
         let mut text = table(&report, width());
+        for note in &self.notes {
+            text += &format!("\n{note}");
+        }
         for path in written.iter().flatten() {
             text += &format!("\nwrote {}", path.display());
         }

@@ -14,7 +14,7 @@ mod view;
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
 pub use motion::{Flips, STEP_PX, flips};
-pub use view::{Question, View};
+pub use view::{Oracle, Question, View};
 
 use crate::cause::Replay;
 use crate::mask::{Mask, Truth, TruthMask};
