@@ -86,7 +86,7 @@ pub(super) struct CheckArgs {
     /// Write report.json and pictures here
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Formats to write to --out besides report.json, separated by commas: csv, markdown, junit
+    /// Formats to write to --out besides report.json, separated by commas: csv, markdown, junit, html
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "out")]
     pub(super) format: Vec<String>,
 }

@@ -10,6 +10,7 @@ mod diagnose;
 mod doctor;
 mod exit;
 mod explain;
+mod imagery;
 mod inspect;
 mod judge;
 mod list;

@@ -6,10 +6,12 @@
 mod cost;
 mod diagnose;
 mod jitter;
+mod occluders;
 mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
+pub use occluders::occluders;
 pub use view::{Question, View};
 
 use crate::cause::Replay;

@@ -6,6 +6,7 @@
 
 pub mod export;
 mod format;
+pub mod html;
 pub mod mask_image;
 pub mod model;
 pub mod picture;

@@ -10,6 +10,7 @@ mod cause_map;
 mod colour;
 mod error_map;
 mod legend;
+mod page;
 mod palette;
 mod sheet;
 mod value_map;
@@ -17,6 +18,7 @@ mod value_map;
 pub use cause_colours::colour_of_cause;
 pub use cause_map::{CauseMap, cause_map};
 pub use error_map::{ErrorMap, error_map};
+pub(super) use page::page_colours;
 pub use value_map::{ValueMap, value_map};
 
 use glam::UVec2;
