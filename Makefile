@@ -30,6 +30,7 @@ demo: setup ## judge three scenes' shadows; report and pictures go to out/demo
 
 test: setup ## format, lints, documentation and every test
 	setup/rust.sh
+	setup/chromium.sh
 	@echo '==> format'
 	$(CARGO) fmt --check
 	@echo '==> lints'

@@ -5,6 +5,7 @@ mod args;
 mod check;
 mod columns;
 mod command;
+mod compare;
 mod context;
 mod diagnose;
 mod doctor;
@@ -20,6 +21,7 @@ mod pictures;
 mod render;
 mod report;
 mod scaffold;
+mod sweep;
 mod tasks;
 mod terminal;
 
@@ -41,6 +43,9 @@ pub fn main() -> ExitCode {
     };
     let result = match cli.command {
         Command::Check(args) => check::run(&args, &terminal),
+        Command::Compare(args) => compare::run(&args),
+        Command::Sweep(args) => sweep::run(&args, &terminal),
+        Command::Merge(args) => sweep::merge(&args),
         Command::Render(args) => render::run(&args, &terminal),
         Command::Truth(args) => masks::truth(&args, &terminal),
         Command::Mask(args) => masks::mask(&args, &terminal),

@@ -65,8 +65,10 @@ fn caption(run: &Run) -> Caption<'_> {
 }
 
 fn name(run: &Run, index: usize, kind: &str) -> String {
-    let safe = |name: &str| -> String {
-        name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
-    };
-    format!("{}.{}.{index}.{kind}.png", safe(&run.scene), safe(&run.light))
+    format!("{}.{}.{index}.{kind}.png", file_name(&run.scene), file_name(&run.light))
+}
+
+/// A scene's or light's name as part of a file's name, on every file system.
+pub(super) fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
 }

@@ -3,11 +3,15 @@
 //! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again.
 
 mod cross_check;
+mod entry;
 mod exact;
+mod key;
 #[cfg(test)]
 mod tests;
 
 pub use cross_check::{Disagreement, cross_check};
+pub use entry::{EntryError, decode, encode};
+pub use key::TruthKey;
 pub use exact::{ExactTruth, exact, of_receiver};
 
 use crate::receiver::{PixelClass, Receiver, Receivers};

@@ -2,13 +2,16 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail by panicking")]
 
+mod browser;
 mod check;
 mod commands;
 mod files;
 mod help;
 mod hostile;
+mod html;
 #[cfg(unix)]
 mod interrupted;
 mod refused;
+mod schema;
 mod specs;
 mod support;

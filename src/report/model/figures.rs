@@ -1,10 +1,10 @@
 //! The figures of a run that no other module owns: causes, truth, budget and jitter.
 
 use crate::verdict::{CauseShare, Verdict};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What one cause is answerable for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CauseEntry {
     /// Wrong pixels named after it.
     pub pixels: u64,
@@ -19,7 +19,7 @@ impl From<&CauseShare> for CauseEntry {
 }
 
 /// Where the truth came from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TruthSource {
     /// The oracle's name.
     pub oracle: String,
@@ -32,7 +32,7 @@ pub struct TruthSource {
 }
 
 /// Pixels on which other oracles disagree; `None` for one that was not asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Disagreements {
     /// Mitsuba 3.
     pub mitsuba: Option<u64>,
@@ -41,7 +41,7 @@ pub struct Disagreements {
 }
 
 /// A limit on a run's error, and whether it was met.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BudgetOutcome {
     /// Largest allowed share of wrong pixels among the asked, 0..=1.
     pub wrong_fraction: Option<f64>,
@@ -72,7 +72,7 @@ impl BudgetOutcome {
 }
 
 /// The spread of a run's error over sub-texel shifts of its map: one view alone is one sample of the texel phase.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Jitter {
     /// How many shifts were rendered.
     pub phases: u32,
@@ -81,7 +81,7 @@ pub struct Jitter {
 }
 
 /// Mean and spread of some samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,

@@ -18,7 +18,9 @@ class Viewport {
   /** Shows the whole picture. */
   fit() {
     const [width, height] = this.paneSize();
-    this.zoom = Math.min(width / this.size[0], height / this.size[1]) || 1;
+    const zoom = Math.min(width / this.size[0], height / this.size[1]) || 1;
+    // Enlarged by a whole factor, every pixel is the same square.
+    this.zoom = zoom > 1 ? Math.floor(zoom) : zoom;
     this.left = (this.size[0] - width / this.zoom) / 2;
     this.top = (this.size[1] - height / this.zoom) / 2;
     this.fitted = true;
