@@ -159,3 +159,14 @@ pub struct Replay {
     /// The stages in order; the last one's values are the GPU's answer.
     pub stages: Vec<Stage>,
 }
+
+impl Replay {
+    /// The same chain with one more stage before it, from the `exact` answer (one per replayed pixel) to where it began.
+    #[must_use]
+    pub fn led_by(mut self, exact: Vec<f64>, name: &'static str, cause: Cause) -> Self {
+        let values = std::mem::replace(&mut self.exact, exact);
+        let causes = vec![cause; values.len()];
+        self.stages.insert(0, Stage { name, values, causes });
+        self
+    }
+}

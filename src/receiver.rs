@@ -1,7 +1,7 @@
 //! Receivers: the exact f64 point behind every pixel centre, from the triangle id the G-buffer found there; and what a
 //! light means for each of them before anything is cast.
 
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, Scene};
 use glam::{DVec2, DVec3, UVec2};
 use rayon::prelude::*;
 
@@ -32,7 +32,7 @@ pub enum PixelClass {
     Background,
     /// The surface is turned away from the light as seen from the eye's side: dark by the lighting model.
     FacingAway,
-    /// Outside a spot's cone, beyond the light's range, or on a mesh that does not receive.
+    /// Outside a spot's cone, behind a rectangle, beyond the light's range, or on a mesh that does not receive.
     NotLit,
     /// The question is put to technique and truth.
     Asked,
@@ -108,13 +108,7 @@ fn classify(scene: &Scene, light: &Light, receiver: &Receiver) -> PixelClass {
     if light_side == 0.0 || (eye_side > 0.0) != (light_side > 0.0) {
         return PixelClass::FacingAway;
     }
-    let from_light = receiver.point_in_world - homogeneous.truncate();
-    let in_range = homogeneous.w == 0.0 || from_light.length() <= light.range_m;
-    let in_cone = match light.kind {
-        LightKind::Spot { axis, outer_rad, .. } => axis.as_dvec3().angle_between(from_light) <= outer_rad,
-        LightKind::Point { .. } | LightKind::Directional { .. } => true,
-    };
-    if in_range && in_cone { PixelClass::Asked } else { PixelClass::NotLit }
+    if light.reaches(receiver.point_in_world) { PixelClass::Asked } else { PixelClass::NotLit }
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ const SIZE: UVec2 = UVec2::new(80, 60);
 
 /// Every axis, every format, filters of odd and even kernels, sizes far too small and of no power of two, every kind of
 /// bias alone and together, and frusta that cut.
-const SPECS: [&str; 21] = [
+const SPECS: [&str; 23] = [
     "map",
     "map:bias=none",
     "map:size=512,bias=constant",
@@ -26,6 +26,8 @@ const SPECS: [&str; 21] = [
     "map:size=700,filter=pcf-box3,bias=none",
     "map:filter=pcf-box5,bias=slope",
     "map:size=256,filter=pcf-box8",
+    "map:size=512,filter=pcf-bilinear",
+    "map:size=300,filter=pcf-poisson",
     "map:depth_convention=forward,bias=slope",
     "map:size=512,format=depth16unorm,bias=none",
     "map:format=depth16unorm,depth_convention=forward,filter=pcf-box3",

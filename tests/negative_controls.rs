@@ -100,7 +100,10 @@ fn with_lights_moved(scene: &Scene, step_m: f32) -> Scene {
     let mut moved = scene.clone();
     for light in &mut moved.lights {
         match &mut light.kind {
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => position.x += step_m,
+            LightKind::Point { position, .. }
+            | LightKind::Spot { position, .. }
+            | LightKind::Rectangle { position, .. }
+            | LightKind::Sphere { position, .. } => position.x += step_m,
             LightKind::Directional { towards_light } => {
                 *towards_light = (*towards_light + Vec3::X * step_m / 4.0).normalize();
             }

@@ -139,6 +139,10 @@ fn turned(scene: &Scene, degrees: f64) -> Scene {
             LightKind::Point { position, aim, .. } => [position, aim].into_iter().for_each(turn),
             LightKind::Directional { towards_light } => turn(towards_light),
             LightKind::Spot { position, axis, .. } => [position, axis].into_iter().for_each(turn),
+            LightKind::Rectangle { position, aim, half_width, half_height, .. } => {
+                [position, aim, half_width, half_height].into_iter().for_each(turn);
+            }
+            LightKind::Sphere { position, aim, .. } => [position, aim].into_iter().for_each(turn),
         }
     }
     scene

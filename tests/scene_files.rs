@@ -4,7 +4,8 @@
 
 use glam::{DVec3, UVec2, Vec3};
 use gnomon::scene::{
-    Falloff, Far, LightKind, LoadOptions, Placement, Scene, SceneFile, file::MeshEntry, load, scene_file_for_obj,
+    Falloff, Far, LightKind, LoadOptions, Placement, Scene, SceneFile, emission_normal, file::MeshEntry, load,
+    scene_file_for_obj,
 };
 use proptest::prelude::*;
 use std::{fs, path::Path};
@@ -104,12 +105,14 @@ fn a_plain_scene_loads_with_its_defaults() {
 }
 
 #[test]
-fn the_near_plane_is_fitted_to_the_nearest_mesh() {
+fn the_near_plane_is_fitted_to_the_nearest_triangle() {
     let scene = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0, 6]"), MODEL).unwrap();
     // Nearest is the floor, whose edge is at z = 4.
     assert!((scene.camera.near_m - 2e-3).abs() < 1e-12);
-    let inside = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0.6, 0.1]"), MODEL).unwrap();
-    assert!((inside.camera.near_m - 8e-6).abs() < 1e-12, "1e-6 of the extent, 8 m");
+    let on_it = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0, 0.1]"), MODEL).unwrap();
+    assert!((on_it.camera.near_m - 8e-6).abs() < 1e-12, "1e-6 of the extent, 8 m");
+    let in_a_box = load_texts(&edited("eye = [0, 3, 6]", "eye = [0, 0.6, 0.1]"), MODEL).unwrap();
+    assert!(in_a_box.camera.near_m > 1e-5, "a box is no surface");
 }
 
 #[test]
@@ -148,6 +151,39 @@ position = [0, 1, 0]
     assert_eq!(falloff, Falloff::Warn { power: 3.0 });
     let LightKind::Point { position, aim, .. } = scene.lights[4].kind else { panic!() };
     assert!(aim.y < position.y && aim.x == position.x, "a light in the receivers' centre aims down");
+}
+
+#[test]
+fn area_lights_face_their_target() {
+    let more = r#"
+[[light]]
+kind = "rectangle"
+position = [0, 5, 0]
+target = [0, 0, 0]
+width = 2
+height = 1
+[[light]]
+kind = "rectangle"
+position = [5, 1, 0]
+target = [0, 1, 0]
+width = 2
+height = 1
+samples = 7
+[[light]]
+kind = "sphere"
+position = [0, 5, 0]
+radius = 0.25
+"#;
+    let scene = load_texts(&format!("{SCENE}{more}"), MODEL).unwrap();
+    for (index, forward) in [(1, DVec3::NEG_Y), (2, DVec3::NEG_X)] {
+        let LightKind::Rectangle { half_width, half_height, .. } = scene.lights[index].kind else { panic!() };
+        assert_eq!((half_width.length(), half_height.length()), (1.0, 0.5));
+        assert_eq!(emission_normal(half_width, half_height), forward);
+    }
+    let LightKind::Rectangle { half_height, samples, .. } = scene.lights[2].kind else { panic!() };
+    assert_eq!((half_height, samples), (Vec3::Y * 0.5, 7), "a rectangle that faces sideways stands upright");
+    let LightKind::Sphere { radius_m, samples, .. } = scene.lights[3].kind else { panic!() };
+    assert_eq!((radius_m, samples), (0.25, 64));
 }
 
 #[test]
@@ -228,8 +264,16 @@ fn values_out_of_range_name_line_and_range() {
         ("[[light]]", "objects = [\"Flor\"]\n[[light]]", "scene.toml:8: unknown OBJ object `Flor`", "mean `Floor`?"),
         ("\"lamp\"", "\"\"", "scene.toml:9: light[0].name", "must not be empty"),
         ("\"lamp\"", "\"a/b\"", "scene.toml:9: light[0].name", "hold none of"),
-        ("\"point\"", "\"rectangle\"", "scene.toml:10: light[0].kind", "knows point, directional and spot"),
-        ("\"point\"", "\"sphere\"\nradius = 1", "scene.toml:10: light[0].kind", "knows point, directional and spot"),
+        ("\"point\"", "\"rectangle\"", "scene.toml:8: light[0].width is missing", "a rectangle light needs it"),
+        ("\"point\"", "\"rectangle\"\nwidth = -1", "scene.toml:11: light[0].width = -1", "1e-30 to 1e12 metres"),
+        ("\"point\"", "\"sphere\"\nradius = 0", "scene.toml:11: light[0].radius = 0", "1e-30 to 1e12 metres"),
+        (
+            "\"point\"",
+            "\"sphere\"\nwidth = 1",
+            "scene.toml:11: light[0].width",
+            "takes position, target, range, radius",
+        ),
+        ("\"point\"", "\"sphere\"\nradius = 1\nsamples = 0", "scene.toml:12: light[0].samples = 0", "1 to 4096"),
         ("\"point\"", "\"directional\"", "scene.toml:11: light[0].position", "takes direction: remove it"),
         ("\"point\"", "\"point\"\ncone_deg = 10", "scene.toml:11: light[0].cone_deg", "means nothing for a point"),
         ("\"point\"", "\"spot\"\ncone_deg = 180", "scene.toml:11: light[0].cone_deg = 180", "below 180"),

@@ -22,7 +22,9 @@ pub(super) enum Command {
         gnomon check model.obj -t map:bias=none --size 640x480")]
     Check(CheckArgs),
     /// Tell what changed from one report.json to another; exit 1 on a regression
-    #[command(after_help = "Example:\n  gnomon compare out/main/report.json out/mine/report.json --max-new-wrong 0.01%")]
+    #[command(
+        after_help = "Example:\n  gnomon compare out/main/report.json out/mine/report.json --max-new-wrong 0.01%"
+    )]
     Compare(CompareArgs),
     /// Measure every configuration of some grids: results.jsonl as they come, results.csv, fronts, plots
     #[command(after_help = "Examples:\n  gnomon sweep scenes/room --light spot --out out/sweep \\\n    \
@@ -60,7 +62,8 @@ pub(super) enum Command {
     #[command(after_help = "Example:\n  gnomon scaffold models/teapot.obj")]
     Scaffold(ScaffoldArgs),
     /// List the scenes of a folder, or the techniques and their parameters
-    #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes")]
+    #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes\n  \
+        gnomon list --matrix")]
     List(ListArgs),
     /// Tell what this machine can do: adapters, features, limits, oracles, versions
     #[command(after_help = "Examples:\n  gnomon doctor\n  GNOMON_ADAPTER=1 gnomon doctor")]
@@ -246,7 +249,11 @@ pub(super) struct ScaffoldArgs {
 #[derive(Debug, Args)]
 pub(super) struct ListArgs {
     /// What to list
-    pub(super) what: Listed,
+    #[arg(required_unless_present = "matrix")]
+    pub(super) what: Option<Listed>,
+    /// Which technique handles which kind of light, and what it needs
+    #[arg(long, conflicts_with = "what")]
+    pub(super) matrix: bool,
     /// Folder to look for scenes in
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub(super) folder: PathBuf,
@@ -270,7 +277,8 @@ fn share(typed: &str) -> Result<f64, String> {
 }
 
 fn shard(typed: &str) -> Result<Shard, String> {
-    let shard = typed.split_once('/').and_then(|(part, of)| Some(Shard { part: part.parse().ok()?, of: of.parse().ok()? }));
+    let shard =
+        typed.split_once('/').and_then(|(part, of)| Some(Shard { part: part.parse().ok()?, of: of.parse().ok()? }));
     shard.filter(|shard| (1..=shard.of).contains(&shard.part)).ok_or_else(|| format!("'{typed}' is not like 1/3"))
 }
 

@@ -130,7 +130,10 @@ impl Session<'_> {
             return Ok(());
         }
         let report = Report::new(report::adapter(self.gpu), std::mem::take(&mut self.runs));
-        let written = self.out.as_ref().map_or_else(|| Ok(Vec::new()), |out| write(&report, self.pixels.imagery(), exporters, out));
+        let written = self
+            .out
+            .as_ref()
+            .map_or_else(|| Ok(Vec::new()), |out| write(&report, self.pixels.imagery(), exporters, out));
         let mut text = table(&report, width());
         for path in written.iter().flatten() {
             text += &format!("\nwrote {}", path.display());
@@ -141,12 +144,7 @@ impl Session<'_> {
     }
 }
 
-fn write(
-    report: &Report,
-    imagery: &Imagery,
-    exporters: &[&Exporter],
-    out: &OutFolder,
-) -> anyhow::Result<Vec<PathBuf>> {
+fn write(report: &Report, imagery: &Imagery, exporters: &[&Exporter], out: &OutFolder) -> anyhow::Result<Vec<PathBuf>> {
     let file = |exporter: &&Exporter| {
         out.write(&format!("report.{}", exporter.extension), &(exporter.write)(report, imagery)?)
     };

@@ -5,14 +5,14 @@ use super::command::Subject;
 use super::context::{load, only_light, open_gpu, prepare};
 use super::exit;
 use super::terminal::{Terminal, say};
-use crate::evaluate::View;
+use crate::evaluate::{View, replay_from_truth};
 use crate::mask::Truth;
 use crate::receiver::{PixelClass, Receiver};
 use crate::scene::{Light, Scene};
 use crate::shade::terminator;
 use crate::technique::Spec;
 use crate::truth;
-use crate::verdict::{WRONG_ABOVE_HARD, entries_of_pixel, judge, ledger};
+use crate::verdict::{entries_of_pixel, judge, ledger, wrong_above};
 use anyhow::bail;
 use glam::DVec3;
 
@@ -71,8 +71,8 @@ pub(super) fn run(args: &ExplainArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let mask = prepared.run()?.mask;
     let answer = mask.pixels[index as usize].map_or(f32::NAN, crate::mask::Visibility::get);
     say(&format!("  truth            {}\n  technique        {answer}", exact.get()));
-    let replay = prepared.replay(&mask, &[index])?;
-    let verdict = judge(&only_this, &truth, &mask, WRONG_ABOVE_HARD)?;
+    let replay = replay_from_truth(prepared.as_ref(), &spec, light, &truth, &mask, &[index])?;
+    let verdict = judge(&only_this, &truth, &mask, wrong_above(light))?;
     let ledger = ledger(&verdict, &truth, &mask, &replay)?;
     say("  stages           value   change   cause");
     for entry in entries_of_pixel(&replay, index).unwrap_or_default() {

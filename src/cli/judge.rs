@@ -12,7 +12,7 @@ use crate::mask::Mask;
 use crate::report::mask_image::{MaskImage, MaskImageError};
 use crate::report::model::{self, Report, Run};
 use crate::report::table::table;
-use crate::verdict::{WRONG_ABOVE_HARD, judge};
+use crate::verdict::{judge, wrong_above};
 use anyhow::{Context, anyhow};
 use glam::UVec2;
 
@@ -26,7 +26,7 @@ pub(super) fn run(args: &JudgeArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
     let question = view.ask(light, terminal)?;
-    let verdict = judge(&question.classes, &question.truth.mask, &mask, WRONG_ABOVE_HARD)
+    let verdict = judge(&question.classes, &question.truth.mask, &mask, wrong_above(light))
         .with_context(|| format!("{file}: does not answer for scene '{}', light '{}'", scene.name, light.name))?;
     let typed = format!("file:{file}");
     let asked = model::Question {
@@ -43,7 +43,7 @@ pub(super) fn run(args: &JudgeArgs, terminal: &Terminal) -> anyhow::Result<u8> {
             quoted_path(&args.mask)
         ),
         image: scene.image_size,
-        wrong_above: WRONG_ABOVE_HARD,
+        wrong_above: wrong_above(light),
     };
     let mut run = Run::judged(asked, &verdict);
     run.truth = Some(truth_source(&question));

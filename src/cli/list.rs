@@ -1,17 +1,18 @@
-//! `gnomon list`: the scenes of a folder, the techniques and their parameters.
+//! `gnomon list`: the scenes of a folder, the techniques and their parameters, what each handles.
 
 use super::args::{ListArgs, Listed};
 use super::columns::{columns, paragraph, text};
-use super::exit;
 use super::terminal::{complain, say};
+use super::{exit, matrix};
 use crate::scene::{self, LoadOptions};
 use crate::technique::{Technique, registry};
 use anyhow::{Context, bail};
 
 pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
     match args.what {
-        Listed::Techniques => registry().iter().for_each(|technique| say(&described(*technique))),
-        Listed::Scenes => {
+        None => matrix::print()?,
+        Some(Listed::Techniques) => registry().iter().for_each(|technique| say(&described(*technique))),
+        Some(Listed::Scenes) => {
             let folder = &args.folder;
             let entries = std::fs::read_dir(folder)
                 .with_context(|| format!("{}: cannot be read; name the folder with --folder", folder.display()))?;

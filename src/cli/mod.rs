@@ -16,6 +16,7 @@ mod inspect;
 mod judge;
 mod list;
 mod masks;
+mod matrix;
 mod output;
 mod pictures;
 mod render;

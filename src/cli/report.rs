@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::report::model;
 use crate::scene::{Light, Scene};
 use crate::technique::Spec;
-use crate::verdict::WRONG_ABOVE_HARD;
+use crate::verdict::wrong_above;
 
 /// What a run asks.
 pub(super) fn question(scene: &Scene, light: &Light, spec: &Spec, command: String) -> model::Question {
@@ -16,7 +16,7 @@ pub(super) fn question(scene: &Scene, light: &Light, spec: &Spec, command: Strin
         technique: spec.to_string(),
         command,
         image: scene.image_size,
-        wrong_above: WRONG_ABOVE_HARD,
+        wrong_above: wrong_above(light),
     }
 }
 

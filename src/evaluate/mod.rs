@@ -5,6 +5,8 @@
 
 mod cost;
 mod diagnose;
+#[cfg(test)]
+mod faults;
 mod jitter;
 mod occluders;
 mod view;
@@ -16,9 +18,10 @@ pub use occluders::occluders;
 pub use view::{Question, TruthStore, View};
 
 use crate::cause::Replay;
-use crate::mask::Mask;
+use crate::mask::{Mask, Truth, TruthMask};
+use crate::scene::Light;
 use crate::technique::{Cost, Prepared, Spec, TechniqueError};
-use crate::verdict::{Ledger, LedgerError, Verdict, VerdictError, WRONG_ABOVE_HARD, judge, ledger};
+use crate::verdict::{Ledger, LedgerError, Verdict, VerdictError, judge, ledger, wrong_above};
 use crate::watch::{Interrupted, Watch};
 
 /// How thorough an evaluation is.
@@ -101,7 +104,7 @@ pub fn evaluate<'v>(
     let (prepared, prepare_ms) = cost::prepared(|| spec.technique().prepare(spec, job))?;
     let mut measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
     measured.cost.prepare_ms = Some(prepare_ms);
-    let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, WRONG_ABOVE_HARD)?;
+    let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, wrong_above(question.light))?;
     if watch.interrupted() {
         return Err(Interrupted.into());
     }
@@ -109,11 +112,37 @@ pub fn evaluate<'v>(
         let is_off = |(_, error): &(usize, &Option<f64>)| error.is_some_and(|error| error != 0.0);
         let pixels: Vec<u32> =
             verdict.signed_error.iter().enumerate().filter(is_off).map(|(pixel, _)| pixel as u32).collect();
-        let replay = prepared.replay(&measured.mask, &pixels)?;
+        let replay =
+            replay_from_truth(prepared.as_ref(), spec, question.light, &question.truth.mask, &measured.mask, &pixels)?;
         let ledger = ledger(&verdict, &question.truth.mask, &measured.mask, &replay)?;
         (replay, ledger)
     } else {
         (Replay::default(), Ledger::default())
     };
     Ok(Evaluation { prepared, mask: measured.mask, verdict, replay, ledger, cost: measured.cost })
+}
+
+/// Replays the given pixels (ascending indices of asked pixels) from the truth to `answer`. Where a technique takes an
+/// area light for its centre, the first stage is that.
+///
+/// # Errors
+/// As [`Prepared::replay`].
+pub fn replay_from_truth(
+    prepared: &dyn Prepared,
+    spec: &Spec,
+    light: &Light,
+    truth: &TruthMask,
+    answer: &Mask,
+    pixels: &[u32],
+) -> Result<Replay, TechniqueError> {
+    let replay = prepared.replay(answer, pixels)?;
+    let Some(cause) = spec.technique().blamed_for_centre(spec).filter(|_| light.is_area()) else {
+        return Ok(replay);
+    };
+    let known = |pixel: &u32| match truth.pixels.get(*pixel as usize) {
+        Some(Some(Truth::Known(visibility))) => f64::from(visibility.get()),
+        _ => f64::NAN,
+    };
+    let exact = replay.pixels.iter().map(known).collect();
+    Ok(replay.led_by(exact, "light's centre", cause))
 }

@@ -14,5 +14,7 @@ pub fn occluders(view: &View<'_>, question: &Question<'_>) -> Vec<Option<u32>> {
         view.casters.nearest_hit(&segment, Some(receiver.triangle)).map(|hit| hit.triangle)
     };
     let pixels = view.receivers.pixels.par_iter().zip(&question.classes);
-    pixels.map(|(receiver, class)| receiver.as_ref().filter(|_| *class == PixelClass::Asked).and_then(blocker)).collect()
+    pixels
+        .map(|(receiver, class)| receiver.as_ref().filter(|_| *class == PixelClass::Asked).and_then(blocker))
+        .collect()
 }

@@ -12,6 +12,9 @@ pub struct Gpu {
     pub(crate) queue: Queue,
     adapter: AdapterSummary,
     lost: Arc<Mutex<Option<String>>>,
+    /// Text of shaders that is replaced, to see whether anybody notices.
+    #[cfg(test)]
+    pub(crate) fault: Option<(&'static str, &'static str)>,
 }
 
 impl Gpu {
@@ -37,7 +40,14 @@ impl Gpu {
         device.set_device_lost_callback(move |reason, message| {
             *note.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{reason:?} {message}"));
         });
-        Ok(Self { device, queue, adapter: summary, lost })
+        Ok(Self {
+            device,
+            queue,
+            adapter: summary,
+            lost,
+            #[cfg(test)]
+            fault: None,
+        })
     }
 
     /// What reports say about the adapter.

@@ -1,14 +1,12 @@
 //! The G-buffer: which triangle each pixel centre shows.
 
 use super::geometry::CORNER_LAYOUT;
-use super::{Geometry, Gpu, GpuError, Recorder, shader};
+use super::{Drawing, Geometry, Gpu, GpuError, Recorder, shader};
 use crate::scene::Scene;
 use glam::UVec2;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    BindGroupDescriptor, BindGroupEntry, BufferUsages, Color, CompareFunction, DepthStencilState, Extent3d,
-    FragmentState, LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-    RenderPipelineDescriptor, StoreOp, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, VertexState,
+    Color, CompareFunction, DepthStencilState, LoadOp, Operations, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, StoreOp, TextureFormat, TextureUsages,
 };
 
 /// Triangle ids of one picture.
@@ -39,34 +37,13 @@ impl GBuffer {
         if pixels > MAX_PIXELS {
             return Err(too_large("a picture's number of pixels", pixels, MAX_PIXELS));
         }
-        let texture = |label, format, usage| {
-            gpu.device.create_texture(&TextureDescriptor {
-                label: Some(label),
-                size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
         let (ids, recorder) = gpu.scoped("the G-buffer's set-up", || {
-            let ids =
-                texture("ids", TextureFormat::R32Uint, TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC);
-            let depth = texture("depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+            let ids = gpu.texture("ids", size, TextureFormat::R32Uint, usage);
+            let depth = gpu.texture("depth", size, TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
             let pipeline = pipeline(gpu);
-            let clip_from_world = scene.camera.clip_from_world(size).as_mat4();
-            let uniform = gpu.device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("camera"),
-                contents: bytemuck::bytes_of(&clip_from_world),
-                usage: BufferUsages::UNIFORM,
-            });
-            let bindings = gpu.device.create_bind_group(&BindGroupDescriptor {
-                label: None,
-                layout: &pipeline.get_bind_group_layout(0),
-                entries: &[BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
-            });
+            let camera = gpu.uniform("camera", scene.camera.clip_from_world(size).as_mat4());
+            let bindings = gpu.bind(&pipeline.get_bind_group_layout(0), &[camera.as_entire_binding()]);
             let mut recorder = Recorder::new(gpu);
             recorder.render(
                 "g-buffer",
@@ -96,17 +73,10 @@ impl GBuffer {
 }
 
 fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
-    let module = gpu.shader("gbuffer", &[shader::GBUFFER]);
-    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("gbuffer"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(CORNER_LAYOUT)],
-        },
-        primitive: Default::default(),
+    gpu.render_pipeline(&Drawing {
+        label: "gbuffer",
+        files: &[shader::GBUFFER],
+        vertices: &[Some(CORNER_LAYOUT)],
         depth_stencil: Some(DepthStencilState {
             format: TextureFormat::Depth32Float,
             depth_write_enabled: Some(true),
@@ -114,14 +84,7 @@ fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        multisample: Default::default(),
-        fragment: Some(FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(TextureFormat::R32Uint.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
+        targets: &[Some(TextureFormat::R32Uint.into())],
+        ..Drawing::default()
     })
 }

@@ -2,6 +2,7 @@
 //! readback. Everything that can fail on a device comes out as a [`GpuError`].
 
 mod adapter;
+mod build;
 mod context;
 mod error;
 mod gbuffer;
@@ -13,6 +14,7 @@ mod recorder;
 pub mod shader;
 
 pub use adapter::{AdapterSummary, LimitsSummary, describe_adapters};
+pub(crate) use build::Drawing;
 pub use context::Gpu;
 pub use error::{GpuError, INSTALL_HINT};
 pub use gbuffer::GBuffer;

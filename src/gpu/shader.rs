@@ -32,9 +32,12 @@ pub fn concatenated(files: &[Wgsl]) -> String {
 
 impl super::Gpu {
     pub(crate) fn shader(&self, label: &str, files: &[Wgsl]) -> wgpu::ShaderModule {
+        let text = concatenated(files);
+        #[cfg(test)]
+        let text = self.fault.iter().fold(text, |text, (from, to)| text.replace(from, to));
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(concatenated(files).into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! What one light's depth has to span, and how wide a single frustum from it would be.
 
 use super::frustum::{DepthRange, Frustum};
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, LightKind, Scene, distance_to_triangle};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -30,7 +30,9 @@ impl LightReport {
         let casting = || triangles(scene, true, false);
         let receiving = || triangles(scene, false, true);
         let (casters, receivers) = match light.kind {
-            LightKind::Point { position, .. } => {
+            LightKind::Point { position, .. }
+            | LightKind::Rectangle { position, .. }
+            | LightKind::Sphere { position, .. } => {
                 let from = position.as_dvec3();
                 (straight(from, casting()), straight(from, receiving()))
             }
@@ -70,29 +72,15 @@ fn parallel(along: DVec3, start: f64, triangles: impl Iterator<Item = [DVec3; 3]
 }
 
 fn half_angle_about_aim(light: &Light, receiving: impl Iterator<Item = [DVec3; 3]>) -> Option<f64> {
-    let LightKind::Point { position, aim, .. } = light.kind else { return None };
+    let (LightKind::Point { position, aim, .. }
+    | LightKind::Rectangle { position, aim, .. }
+    | LightKind::Sphere { position, aim, .. }) = light.kind
+    else {
+        return None;
+    };
     let from = position.as_dvec3();
     let axis = (aim.as_dvec3() - from).try_normalize()?;
     receiving.flatten().map(|corner| axis.angle_between(corner - from)).reduce(f64::max)
-}
-
-/// Distance from a point to a triangle: to its plane where the foot is inside, otherwise to its nearest side.
-fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let sides = [(a, b), (b, c), (c, a)];
-    let normal = (b - a).cross(c - a);
-    let is_above = |(from, to): (DVec3, DVec3)| (to - from).cross(point - from).dot(normal) >= 0.0;
-    if normal != DVec3::ZERO && sides.into_iter().all(is_above) {
-        return (point - a).dot(normal).abs() / normal.length();
-    }
-    sides.into_iter().map(|(from, to)| distance_to_segment(point, from, to)).fold(f64::INFINITY, f64::min)
-}
-
-fn distance_to_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
-    let along = to - from;
-    let share = (point - from).dot(along) / along.length_squared();
-    // A segment without length has no share (NaN): its start is as near as any of it.
-    let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
-    point.distance(from + along * share)
 }
 
 #[cfg(test)]
@@ -165,20 +153,5 @@ mod tests {
         let away = LightReport::new(&scene(), &point(Vec3::ZERO, Vec3::NEG_X));
         assert!(away.receivers_half_angle_rad.is_some_and(|angle| angle > FRAC_PI_2));
         assert_eq!(LightReport::new(&scene(), &point(Vec3::X, Vec3::X)).receivers_half_angle_rad, None);
-    }
-
-    #[test]
-    fn distance_to_a_triangle_by_region() {
-        let triangle = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0];
-        let cases = [
-            (DVec3::new(0.5, 0.5, 3.0), 3.0),
-            (DVec3::new(1.0, -2.0, 0.0), 2.0),
-            (DVec3::new(2.0, 2.0, 0.0), 2.0_f64.sqrt()),
-            (DVec3::new(-3.0, -4.0, 0.0), 5.0),
-        ];
-        for (point, expected) in cases {
-            assert_near(Some(distance_to_triangle(point, triangle)), expected);
-        }
-        assert_near(Some(distance_to_triangle(DVec3::Z, [DVec3::ZERO; 3])), 1.0);
     }
 }

@@ -147,10 +147,14 @@ pub fn changes_as_text(changes: &[Change]) -> String {
 
 fn lines(change: &Change) -> Vec<String> {
     let known = |figure: Option<String>| figure.unwrap_or_else(|| "no verdict".to_owned());
-    let wrong = |i: usize| known(change.wrong_px[i].zip(change.wrong[i]).map(|(n, share)| format!("{} ({})", grouped(n), percent(share))));
+    let wrong = |i: usize| {
+        known(change.wrong_px[i].zip(change.wrong[i]).map(|(n, share)| format!("{} ({})", grouped(n), percent(share))))
+    };
     let mark = if change.regressions.is_empty() { "changed   " } else { "REGRESSION" };
-    let mut lines = vec![format!("{mark} {}", printable(&change.run)), format!("    wrong px {} → {}", wrong(0), wrong(1))];
-    let causes: Vec<String> = change.causes.iter().map(|(cause, growth)| format!("{} {growth:+}", cause.name())).collect();
+    let mut lines =
+        vec![format!("{mark} {}", printable(&change.run)), format!("    wrong px {} → {}", wrong(0), wrong(1))];
+    let causes: Vec<String> =
+        change.causes.iter().map(|(cause, growth)| format!("{} {growth:+}", cause.name())).collect();
     if !causes.is_empty() {
         lines.push(format!("    by cause {}", causes.join(", ")));
     }
@@ -208,7 +212,8 @@ mod tests {
         let bound = Tolerance { ms_ratio: Some(2.0), work_ratio: 3.0, ..STRICT };
         assert_eq!(regressions(&dearer, &bound), [""; 0], "a software adapter");
         let (mut before, mut after) = (report(), dearer);
-        [&mut before, &mut after].map(|report| report.adapter.software = false);
+        before.adapter.software = false;
+        after.adapter.software = false;
         assert_eq!(compare(&before, &after, &bound)[0].regressions, ["GPU ms × 10"]);
     }
 
@@ -219,6 +224,10 @@ mod tests {
         less.runs[0].status = Status::Failed;
         let found = regressions(&less, &STRICT);
         assert_eq!(found, ["no longer answers: ", "is missing"]);
-        assert!(compare(&less, &report(), &STRICT).iter().any(|change| change.run == label(&gone) && change.regressions.is_empty()));
+        assert!(
+            compare(&less, &report(), &STRICT)
+                .iter()
+                .any(|change| change.run == label(&gone) && change.regressions.is_empty())
+        );
     }
 }

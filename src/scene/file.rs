@@ -100,15 +100,15 @@ pub enum ScaleEntry {
 pub struct LightEntry {
     /// Unique; default: the kind, then kind-2, kind-3 …
     pub name: Option<String>,
-    /// point, directional or spot (rectangle and sphere are refused by name).
+    /// point, directional, spot, rectangle or sphere.
     pub kind: String,
     /// Where it is: all kinds but directional.
     pub position: Option<[f64; 3]>,
     /// The way a directional light travels.
     pub direction: Option<[f64; 3]>,
-    /// What a point light's single frustum or a spot aims at; default: the receivers' centre.
+    /// What a spot or rectangle aims at, and a point's or sphere's single frustum; default: the receivers' centre.
     pub target: Option<[f64; 3]>,
-    /// Linear RGB: W/sr for point and spot, W/m² for directional; default 1 each.
+    /// Linear RGB: W/sr for point and spot, W/m² for directional, W/(m² sr) for rectangle and sphere; default 1 each.
     pub intensity: Option<[f64; 3]>,
     /// Beyond this distance the light is off; default: never.
     pub range: Option<f64>,
@@ -122,13 +122,13 @@ pub struct LightEntry {
     pub falloff: Option<String>,
     /// Exponent of the warn falloff; default 1.
     pub warn_power: Option<f64>,
-    /// Width of a rectangle light, metres. This key and the next three belong to kinds this version knows by name only.
+    /// Width of a rectangle light, metres.
     pub width: Option<f64>,
     /// Height of a rectangle light, metres.
     pub height: Option<f64>,
     /// Radius of a sphere light, metres.
     pub radius: Option<f64>,
-    /// Number of light samples of a rectangle or sphere light.
+    /// Number of points of a rectangle or sphere light that its exact visibility counts; default 64.
     pub samples: Option<u32>,
 }
 

@@ -11,6 +11,20 @@ pub struct Segment {
     pub to: DVec3,
 }
 
+impl Segment {
+    /// From a receiver to a homogeneous point of a light; where that is a direction it ends `scene_radius_m` × 4 away,
+    /// beyond all geometry.
+    #[must_use]
+    pub fn towards(receiver_in_world: DVec3, light: DVec4, scene_radius_m: f64) -> Self {
+        let to = if light.w == 0.0 {
+            receiver_in_world + light.truncate() * (4.0 * scene_radius_m)
+        } else {
+            light.truncate()
+        };
+        Self { from: receiver_in_world, to }
+    }
+}
+
 /// A light source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light {
@@ -18,13 +32,15 @@ pub struct Light {
     pub name: String,
     /// What kind, and where.
     pub kind: LightKind,
-    /// Linear RGB. W/sr for point and spot, W/m² (irradiance) for directional.
+    /// Linear RGB. W/sr for point and spot, W/m² (irradiance) for directional, W/(m² sr) (radiance) for rectangle and
+    /// sphere.
     pub intensity: Vec3,
     /// Beyond this distance the light is off, metres; infinite if the scene sets none.
     pub range_m: f64,
 }
 
-/// The closed list of light kinds; rectangle and sphere lights join it with the soft-shadow techniques.
+/// The closed list of light kinds. A rectangle and a sphere have an extent: they are *area lights*, which a point may see
+/// in part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LightKind {
     /// Shines equally in all directions.
@@ -54,6 +70,30 @@ pub enum LightKind {
         /// c1, c2, c3 of the classic attenuation.
         attenuation: [f32; 3],
     },
+    /// Shines from one side of a rectangle, with the same radiance in all directions.
+    Rectangle {
+        /// Its centre, rebased world.
+        position: Vec3,
+        /// What it faces, and what a single shadow frustum aims at.
+        aim: Vec3,
+        /// From the centre to the middle of its right side, as seen from behind the light.
+        half_width: Vec3,
+        /// From the centre to the middle of its upper side.
+        half_height: Vec3,
+        /// How many points of it the exact visibility counts.
+        samples: u32,
+    },
+    /// Shines from a sphere's surface, with the same radiance in all directions.
+    Sphere {
+        /// Its centre, rebased world.
+        position: Vec3,
+        /// What a single shadow frustum aims at.
+        aim: Vec3,
+        /// Metres.
+        radius_m: f32,
+        /// How many points of the disc that a receiver sees of it the exact visibility counts.
+        samples: u32,
+    },
 }
 
 /// How a spot light falls off from its axis to its outer angle.
@@ -74,26 +114,47 @@ pub enum Falloff {
 }
 
 impl Light {
-    /// Homogeneous position: w = 1 for a point, w = 0 with a vector *towards* the light for a direction.
+    /// Homogeneous position: w = 1 for a point, w = 0 with a vector *towards* the light for a direction. An area light's
+    /// is its centre, which is what a technique for lights without extent takes it for.
     #[must_use]
     pub fn homogeneous(&self) -> DVec4 {
         match self.kind {
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => position.as_dvec3().extend(1.0),
+            LightKind::Point { position, .. }
+            | LightKind::Spot { position, .. }
+            | LightKind::Rectangle { position, .. }
+            | LightKind::Sphere { position, .. } => position.as_dvec3().extend(1.0),
             LightKind::Directional { towards_light } => towards_light.as_dvec3().extend(0.0),
         }
     }
 
     /// The shadow ray of a receiver as a segment between two f64 points, which is what every oracle and replay
-    /// casts. A directional light ends it `scene_radius_m` × 4 away, beyond all geometry.
+    /// casts; of an area light the one to its centre ([`super::Emitter`] has them all).
     #[must_use]
     pub fn segment_from(&self, receiver_in_world: DVec3, scene_radius_m: f64) -> Segment {
+        Segment::towards(receiver_in_world, self.homogeneous(), scene_radius_m)
+    }
+
+    /// Whether it has an extent, so that a point may see part of it.
+    #[must_use]
+    pub fn is_area(&self) -> bool {
+        matches!(self.kind, LightKind::Rectangle { .. } | LightKind::Sphere { .. })
+    }
+
+    /// Whether it shines at a point at all: within its range, a spot's cone, before a rectangle, outside a sphere.
+    #[must_use]
+    pub fn reaches(&self, point_in_world: DVec3) -> bool {
         let light = self.homogeneous();
-        let to = if light.w == 0.0 {
-            receiver_in_world + light.truncate() * (4.0 * scene_radius_m)
-        } else {
-            light.truncate()
+        let from_light = point_in_world - light.truncate();
+        let in_range = light.w == 0.0 || from_light.length() <= self.range_m;
+        let before_it = match self.kind {
+            LightKind::Spot { axis, outer_rad, .. } => axis.as_dvec3().angle_between(from_light) <= outer_rad,
+            LightKind::Rectangle { half_width, half_height, .. } => {
+                emission_normal(half_width, half_height).dot(from_light) > 0.0
+            }
+            LightKind::Sphere { radius_m, .. } => from_light.length() > f64::from(radius_m),
+            LightKind::Point { .. } | LightKind::Directional { .. } => true,
         };
-        Segment { from: receiver_in_world, to }
+        in_range && before_it
     }
 
     /// The kind's name as scene files spell it.
@@ -103,6 +164,14 @@ impl Light {
             LightKind::Point { .. } => "point",
             LightKind::Directional { .. } => "directional",
             LightKind::Spot { .. } => "spot",
+            LightKind::Rectangle { .. } => "rectangle",
+            LightKind::Sphere { .. } => "sphere",
         }
     }
+}
+
+/// The unit vector along which a rectangle shines, from its halves.
+#[must_use]
+pub fn emission_normal(half_width: Vec3, half_height: Vec3) -> DVec3 {
+    half_height.as_dvec3().cross(half_width.as_dvec3()).normalize_or_zero()
 }

@@ -8,6 +8,8 @@
 mod bare;
 mod build;
 mod camera;
+mod distance;
+mod emitter;
 mod error;
 pub mod file;
 mod folder;
@@ -18,9 +20,11 @@ mod source;
 
 pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
+pub use distance::distance_to_triangle;
+pub use emitter::Emitter;
 pub use error::{Place, SceneError};
 pub use file::SceneFile;
-pub use light::{Falloff, Light, LightKind, Segment};
+pub use light::{Falloff, Light, LightKind, Segment, emission_normal};
 pub use load::{LoadOptions, Placement, load};
 
 use glam::{DVec3, DVec4, UVec2, Vec3};

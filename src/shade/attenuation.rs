@@ -1,7 +1,8 @@
 //! How much of a light arrives at a point: distance, range and cone. Formulas: docs/lighting.md.
 
-use crate::scene::{Falloff, Light, LightKind, LightingMode};
-use glam::DVec3;
+use crate::scene::{Emitter, Falloff, Light, LightKind, LightingMode, emission_normal};
+use glam::{DVec3, DVec4};
+use std::f64::consts::PI;
 
 /// Unblocked light as it arrives at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,30 +13,65 @@ pub struct Incident {
     pub strength: DVec3,
 }
 
-/// The light of `light` at a point of the rebased world, as if nothing were in between. `None` where the light does
-/// not shine: beyond its range, outside its cone, or at the light itself, where it has no direction.
+/// The light of `light` at a point of the rebased world, as if nothing were in between; an area light's as if all of it
+/// came from its centre. `None` where the light does not shine: beyond its range, outside its cone, behind a rectangle,
+/// or at the light itself, where it has no direction.
 #[must_use]
 pub fn incident(light: &Light, mode: LightingMode, point_in_world: DVec3) -> Option<Incident> {
+    incident_from(light, light.homogeneous(), mode, point_in_world).filter(|_| light.reaches(point_in_world))
+}
+
+/// The light of each point of `emitter`, which are those of `light`, in order: together the light's own. Empty where the
+/// light does not shine.
+pub fn incidents<'a>(
+    light: &'a Light,
+    emitter: &'a Emitter,
+    mode: LightingMode,
+    point_in_world: DVec3,
+) -> impl Iterator<Item = Incident> + 'a {
+    let points = light.reaches(point_in_world).then(|| emitter.points_for(point_in_world));
+    let share = 1.0 / emitter.count() as f64;
+    points.into_iter().flatten().filter_map(move |point| {
+        let incident = incident_from(light, point, mode, point_in_world)?;
+        Some(Incident { strength: share * incident.strength, ..incident })
+    })
+}
+
+/// The whole light as if it came from one of its points.
+fn incident_from(light: &Light, from: DVec4, mode: LightingMode, point_in_world: DVec3) -> Option<Incident> {
     let intensity = light.intensity.as_dvec3();
-    let (position, attenuation) = match light.kind {
-        LightKind::Directional { towards_light } => {
-            let towards_light = towards_light.as_dvec3().try_normalize()?;
-            return Some(Incident { towards_light, strength: intensity });
-        }
-        LightKind::Point { position, attenuation, .. } | LightKind::Spot { position, attenuation, .. } => {
-            (position, attenuation)
-        }
-    };
-    let to_light = position.as_dvec3() - point_in_world;
+    let to_light = from.truncate() - point_in_world * from.w;
     let distance_m = to_light.length();
-    let towards_light = to_light.try_normalize().filter(|_| distance_m <= light.range_m)?;
-    let cone = match light.kind {
-        LightKind::Spot { axis, outer_rad, falloff, .. } => {
-            cone_factor(falloff, outer_rad, axis.as_dvec3().angle_between(-towards_light))?
+    let towards_light = to_light.try_normalize()?;
+    let factor = match light.kind {
+        LightKind::Directional { .. } => 1.0,
+        LightKind::Point { attenuation, .. } => distance_factor(mode, attenuation, distance_m),
+        LightKind::Spot { axis, outer_rad, falloff, attenuation, .. } => {
+            let angle_rad = axis.as_dvec3().angle_between(-towards_light);
+            distance_factor(mode, attenuation, distance_m) * cone_factor(falloff, outer_rad, angle_rad)?
         }
-        _ => 1.0,
+        LightKind::Rectangle { .. } | LightKind::Sphere { .. } if mode == LightingMode::Classic => 1.0,
+        LightKind::Rectangle { half_width, half_height, .. } => {
+            let area_m2 = 4.0 * half_width.as_dvec3().length() * half_height.as_dvec3().length();
+            let cosine = emission_normal(half_width, half_height).dot(-towards_light);
+            area_m2 * cosine.max(0.0) / (distance_m * distance_m)
+        }
+        LightKind::Sphere { position, radius_m, .. } => {
+            let radius_m = f64::from(radius_m);
+            let to_centre = position.as_dvec3() - point_in_world;
+            sphere_factor(to_centre, radius_m, towards_light, distance_m)
+        }
     };
-    Some(Incident { towards_light, strength: intensity * distance_factor(mode, attenuation, distance_m) * cone })
+    Some(Incident { towards_light, strength: intensity * factor })
+}
+
+/// Solid angle of a sphere's facing disc as one of its points shows it, times what the sphere's own cone is wider:
+/// the irradiance of the whole is then the sphere's, π L (R/d)².
+fn sphere_factor(to_centre: DVec3, radius_m: f64, towards_light: DVec3, distance_m: f64) -> f64 {
+    let centre_m = to_centre.length();
+    let cosine = to_centre.dot(towards_light) / centre_m;
+    let widening = 1.0 + (radius_m / centre_m).powi(2);
+    PI * radius_m * radius_m * cosine / (distance_m * distance_m) * widening
 }
 
 /// Inverse-square falloff, or the classic min(1, 1/(c1 + c2 d + c3 d²)), which is 1 where the denominator is not positive.
@@ -116,6 +152,45 @@ mod tests {
     #[test]
     fn at_the_light_itself_there_is_no_direction() {
         assert_eq!(incident(&spot(Falloff::Hard), LightingMode::Classic, DVec3::Y * 2.0), None);
+    }
+
+    /// Irradiance of a surface at the origin with normal +Y.
+    fn irradiance(light: &Light) -> f64 {
+        let emitter = Emitter::new(light);
+        let incidents = incidents(light, &emitter, LightingMode::Physical, DVec3::ZERO);
+        incidents.map(|incident| incident.strength.x * incident.towards_light.y).sum()
+    }
+
+    #[test]
+    fn a_sphere_irradiates_by_its_solid_angle() {
+        let position = Vec3::new(1.0, 2.0, -0.5);
+        let kind = LightKind::Sphere { position, aim: Vec3::ZERO, radius_m: 0.5, samples: 1024 };
+        let sphere = Light { name: "bulb".into(), kind, intensity: Vec3::splat(3.0), range_m: f64::INFINITY };
+        let (d2, cosine) = (f64::from(position.length_squared()), f64::from(position.normalize().y));
+        let expected = PI * 3.0 * 0.25 / d2 * cosine;
+        assert!((irradiance(&sphere) / expected - 1.0).abs() < 1e-3, "{} is not {expected}", irradiance(&sphere));
+    }
+
+    #[test]
+    fn a_square_straight_above_irradiates_by_its_form_factor() {
+        let (half_width, half_height) = (Vec3::X, Vec3::NEG_Z);
+        let kind =
+            LightKind::Rectangle { position: Vec3::Y * 2.0, aim: Vec3::ZERO, half_width, half_height, samples: 1024 };
+        let panel = Light { name: "panel".into(), kind, intensity: Vec3::ONE, range_m: f64::INFINITY };
+        // Four times the form factor of a quarter seen from below its corner, both sides half the height.
+        let side = 0.5_f64;
+        let term = side / (1.0 + side * side).sqrt() * (side / (1.0 + side * side).sqrt()).atan();
+        let expected = 4.0 * term;
+        assert!((irradiance(&panel) / expected - 1.0).abs() < 1e-3, "{} is not {expected}", irradiance(&panel));
+        let mut turned = panel.clone();
+        turned.kind = LightKind::Rectangle {
+            position: Vec3::Y * 2.0,
+            aim: Vec3::Y * 4.0,
+            half_width,
+            half_height: -half_height,
+            samples: 4,
+        };
+        assert_eq!(incident(&turned, LightingMode::Physical, DVec3::ZERO), None, "it shines upwards");
     }
 
     #[test]

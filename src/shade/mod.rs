@@ -13,12 +13,12 @@ mod encode;
 mod interpolate;
 mod terminator;
 
-pub use attenuation::{Incident, incident};
+pub use attenuation::{Incident, incident, incidents};
 pub use terminator::terminator;
 
 use crate::mask::{Mask, Visibility};
 use crate::receiver::{Receiver, Receivers};
-use crate::scene::{Light, Material, Scene, Shading};
+use crate::scene::{Emitter, Light, Material, Scene, Shading};
 use brdf::reflected;
 use glam::{DVec3, UVec2, Vec3};
 use interpolate::Facet;
@@ -42,13 +42,14 @@ pub struct Picture {
 /// darken facets turned away from the light, which nobody asks about, holds V = 0 there.
 #[must_use]
 pub fn shade(scene: &Scene, receivers: &Receivers, lights: &[(&Light, &Mask)]) -> Picture {
+    let emitters: Vec<Emitter> = lights.iter().map(|(light, _)| Emitter::new(light)).collect();
     let pixel_colour = |(pixel, receiver): (usize, &Option<Receiver>)| match receiver {
         None => BACKGROUND,
         Some(receiver) => {
             let takes_shadow = scene.mesh_of(receiver.triangle).receives;
-            let lit = lights.iter().map(|(light, mask)| {
+            let lit = lights.iter().zip(&emitters).map(|((light, mask), emitter)| {
                 let visibility = mask.pixels.get(pixel).copied().flatten().filter(|_| takes_shadow);
-                f64::from(visibility.unwrap_or(Visibility::LIT).get()) * direct_light(scene, receiver, light)
+                f64::from(visibility.unwrap_or(Visibility::LIT).get()) * direct_light(scene, receiver, light, emitter)
             });
             (own_colour(scene, material_of(scene, receiver)) + lit.sum::<DVec3>()).as_vec3()
         }
@@ -68,11 +69,13 @@ fn own_colour(scene: &Scene, material: &Material) -> DVec3 {
 
 /// What one light adds where nothing blocks it. Gouraud shading lights the corners and interpolates their colours (H.
 /// Gouraud, "Continuous Shading of Curved Surfaces", 1971), the others light the point itself.
-fn direct_light(scene: &Scene, receiver: &Receiver, light: &Light) -> DVec3 {
+fn direct_light(scene: &Scene, receiver: &Receiver, light: &Light, emitter: &Emitter) -> DVec3 {
+    let material = material_of(scene, receiver);
     let lit = |point: DVec3, normal: DVec3| {
-        let Some(incident) = incident(light, scene.mode, point) else { return DVec3::ZERO };
         let towards_eye = (scene.camera.eye.as_dvec3() - point).normalize_or_zero();
-        incident.strength * reflected(scene, material_of(scene, receiver), normal, incident.towards_light, towards_eye)
+        incidents(light, emitter, scene.mode, point)
+            .map(|incident| incident.strength * reflected(scene, material, normal, incident.towards_light, towards_eye))
+            .sum::<DVec3>()
     };
     match scene.shading {
         Shading::Flat => lit(receiver.point_in_world, receiver.normal_in_world),

@@ -8,6 +8,7 @@
 mod cost;
 pub mod footprint;
 pub mod map;
+mod matrix;
 pub mod param;
 pub mod planar;
 pub mod projective_texture;
@@ -17,6 +18,7 @@ mod unsupported;
 pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
+pub use matrix::{MatrixRow, light_kinds, matrix};
 pub use receiver_buffer::ReceiverBuffer;
 pub use spec::{Spec, SpecError};
 pub use unsupported::Unsupported;
@@ -63,6 +65,11 @@ pub trait Technique: Sync {
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported>;
     /// Specifications that would lessen errors of this cause, the most promising first: one knob changed in each.
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec>;
+    /// The cause that owns what is lost by taking an area light for its centre, where replays of this specification start;
+    /// `None` if they start from the light's own exact answer.
+    fn blamed_for_centre(&self, _spec: &Spec) -> Option<Cause> {
+        Some(Cause::TechniqueModel)
+    }
     /// Builds everything the runs need.
     ///
     /// # Errors

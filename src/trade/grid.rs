@@ -134,7 +134,10 @@ mod tests {
             ]
         );
         // A range ends at the last doubling; a list may mix both; a configuration stands once.
-        assert_eq!(shorts(&["map:size=100..500|128", "map:size=128"]), ["map:size=100", "map:size=200", "map:size=400", "map:size=128"]);
+        assert_eq!(
+            shorts(&["map:size=100..500|128", "map:size=128"]),
+            ["map:size=100", "map:size=200", "map:size=400", "map:size=128"]
+        );
         assert_eq!(shorts(&["map"]), ["map"]);
     }
 
@@ -149,7 +152,10 @@ mod tests {
         assert!(refusal("map:size=9..3").contains("'9..3' is no range"));
         assert!(refusal("map:size=0..3").contains("'0..3' is no range"));
         assert!(refusal("map:size=a..b").contains("'a..b' is no range"));
-        assert!(refusal("map:size=512,filters=nearest").starts_with("grid 'map:size=512,filters=nearest': technique 'map' has no parameter 'filters'"));
+        assert!(
+            refusal("map:size=512,filters=nearest")
+                .starts_with("grid 'map:size=512,filters=nearest': technique 'map' has no parameter 'filters'")
+        );
         assert!(refusal("map:size=1..16384,bias_constant_ulps=1..65536,bias_slope=1..64,fit_margin_texels=1..8,bias_cap_texels=1..8192").contains("more than"));
     }
 }

@@ -4,12 +4,13 @@
 //! Colours are those of M. Okabe and K. Ito, "Color Universal Design", 2008, and every family has a shape of its own, too.
 
 use super::front::{Point, front};
-use plotters::coord::combinators::IntoLogRange;
 use plotters::coord::Shift;
+use plotters::coord::combinators::IntoLogRange;
 use plotters::coord::combinators::LogCoord;
 use plotters::prelude::{
-    Cartesian2d, ChartBuilder, ChartContext, Circle, Color, Cross, DrawingArea, EmptyElement, IntoDrawingArea, IntoFont,
-    LineSeries, PathElement, Polygon, Rectangle, RGBColor, SVGBackend, SeriesLabelPosition, ShapeStyle, Text, TriangleMarker,
+    Cartesian2d, ChartBuilder, ChartContext, Circle, Color, Cross, DrawingArea, EmptyElement, IntoDrawingArea,
+    IntoFont, LineSeries, PathElement, Polygon, RGBColor, Rectangle, SVGBackend, SeriesLabelPosition, ShapeStyle, Text,
+    TriangleMarker,
 };
 
 /// Pixels of the plot.
@@ -183,7 +184,9 @@ mod tests {
     fn a_plot_says_what_its_axes_are_and_escapes_names() {
         let marks = [mark("map", 0.5, 1e4), mark("map", 0.01, 2e6), mark("volume", 0.0, 3e5)];
         let svg = plot("a <title>", "work", &marks, 1e-6).unwrap().unwrap();
-        for word in ["work", "wrong pixels of those asked, %", "volume", "nothing is both", "&lt;title&gt;", "&lt;&amp;"] {
+        for word in
+            ["work", "wrong pixels of those asked, %", "volume", "nothing is both", "&lt;title&gt;", "&lt;&amp;"]
+        {
             assert!(svg.contains(word), "{word}");
         }
         assert!(!svg.contains("<title>") && svg.starts_with("<svg"));

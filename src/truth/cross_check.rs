@@ -3,9 +3,10 @@
 use super::asked;
 use crate::cast::brute;
 use crate::mask::{Truth, TruthMask, Visibility};
-use crate::receiver::{PixelClass, Receivers};
-use crate::scene::{Light, Scene, Segment};
+use crate::receiver::{PixelClass, Receiver, Receivers};
+use crate::scene::{Emitter, Light, Scene, Segment};
 use crate::watch::{Interrupted, Watch};
+use glam::DVec4;
 use rayon::prelude::*;
 
 /// A pixel on which two oracles differ.
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 pub struct Disagreement {
     /// `y * width + x`.
     pub pixel: u32,
-    /// The shadow ray that both were asked about.
+    /// The shadow ray that both were asked about; of an area light's the one to its centre.
     pub segment: Segment,
     /// What the truth says.
     pub exact: Visibility,
@@ -21,8 +22,8 @@ pub struct Disagreement {
     pub brute: Visibility,
 }
 
-/// Decides `samples` of the pixels that `truth` knows again by brute force, always the same ones, spread evenly over
-/// them, and returns those on which the two differ. All of them if there are no more than `samples`.
+/// Decides `samples` shadow rays again by brute force and returns the pixels on which the two differ. The pixels are
+/// always the same ones, spread evenly over those that `truth` knows; all of them if there are no more rays.
 ///
 /// # Errors
 /// [`Interrupted`] once `watch` says so.
@@ -42,7 +43,8 @@ pub fn cross_check(
         })
         .collect();
     let radius_m = scene.bounds().radius();
-    let chosen = spread(known.len(), samples as usize);
+    let emitter = Emitter::new(light);
+    let chosen = spread(known.len(), (samples as usize).div_ceil(emitter.count()));
     watch.start("brute-force check", chosen.len() as u64);
     let checked: Result<Vec<Option<Disagreement>>, Interrupted> = chosen
         .into_par_iter()
@@ -52,13 +54,24 @@ pub fn cross_check(
             }
             let (pixel, receiver, exact) = known[i];
             let segment = light.segment_from(receiver.point_in_world, radius_m);
-            let blocked = brute::any_hit(scene, &segment, Some(receiver.triangle)).is_some();
-            let brute = if blocked { Visibility::SHADOW } else { Visibility::LIT };
+            let brute = by_brute_force(scene, light, &emitter, &receiver, radius_m);
             watch.advance(1);
             Ok((brute != exact).then_some(Disagreement { pixel, segment, exact, brute }))
         })
         .collect();
     Ok(checked?.into_iter().flatten().collect())
+}
+
+fn by_brute_force(scene: &Scene, light: &Light, emitter: &Emitter, receiver: &Receiver, radius_m: f64) -> Visibility {
+    let eye_side = scene.facing(receiver.triangle, scene.camera.eye.as_dvec3().extend(1.0));
+    let is_before = |point: DVec4| scene.facing(receiver.triangle, point) * eye_side.signum() > 0.0;
+    let is_clear = |point: DVec4| {
+        let segment = Segment::towards(receiver.point_in_world, point, radius_m);
+        brute::any_hit(scene, &segment, Some(receiver.triangle)).is_none()
+    };
+    let points = emitter.points_for(receiver.point_in_world);
+    let seen = points.filter(|point| (!light.is_area() || is_before(*point)) && is_clear(*point)).count();
+    Visibility::new((seen as f64 / emitter.count() as f64) as f32).unwrap_or(Visibility::SHADOW)
 }
 
 /// Up to `samples` different indices below `count`, ascending: one in each of as many equal parts, at a place that the

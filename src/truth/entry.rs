@@ -71,7 +71,8 @@ pub fn decode(key: &TruthKey, bytes: &[u8]) -> Result<ExactTruth, EntryError> {
     ZlibDecoder::new(rest).read_to_end(&mut numbers).map_err(|_| EntryError::Damaged)?;
     let (numbers, left_over) = numbers.as_chunks();
     let pixels: Option<Vec<Option<Truth>>> = numbers.iter().map(|bytes| pixel(u32::from_le_bytes(*bytes))).collect();
-    let pixels = pixels.filter(|pixels| left_over.is_empty() && pixels.len() as u64 == u64::from(size.x) * u64::from(size.y));
+    let pixels =
+        pixels.filter(|pixels| left_over.is_empty() && pixels.len() as u64 == u64::from(size.x) * u64::from(size.y));
     let mask = TruthMask { size, pixels: pixels.ok_or(EntryError::Damaged)? };
     Ok(ExactTruth { mask, rays: u64::from_le_bytes(*rays), ms: f64::from_le_bytes(*ms) })
 }

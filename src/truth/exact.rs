@@ -5,7 +5,7 @@ use super::asked;
 use crate::cast::{Casters, Occlusion};
 use crate::mask::{Truth, TruthMask, Visibility};
 use crate::receiver::{PixelClass, Receiver, Receivers};
-use crate::scene::{Light, Scene};
+use crate::scene::{Emitter, Light, Scene, Segment};
 use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,7 +22,8 @@ pub struct ExactTruth {
     pub ms: f64,
 }
 
-/// Decides for every pixel of class [`PixelClass::Asked`] whether it sees `light`. `classes` has one entry per pixel of
+/// Decides for every pixel of class [`PixelClass::Asked`] whether it sees `light`, or how many of the points of an area
+/// light. `classes` has one entry per pixel of
 /// `receivers`; `casters` were made from `scene`.
 ///
 /// # Errors
@@ -38,7 +39,14 @@ pub fn exact(
     let start = Instant::now();
     let eye = scene.camera.eye.as_dvec3();
     let radius_m = scene.bounds().radius();
-    let decide = |receiver: &Receiver| of_receiver(casters, light, receiver, eye, radius_m);
+    let emitter = Emitter::new(light);
+    let decide = |receiver: &Receiver| {
+        if light.is_area() {
+            of_area(scene, casters, &emitter, receiver, radius_m)
+        } else {
+            of_receiver(casters, light, receiver, eye, radius_m)
+        }
+    };
 
     let (width, height) = (receivers.size.x as usize, receivers.size.y as usize);
     watch.start("exact truth", u64::from(receivers.size.y));
@@ -54,12 +62,49 @@ pub fn exact(
         })
         .collect();
     let pixels = rows?.concat();
-    let rays = pixels.iter().flatten().count() as u64;
+    let rays = (pixels.iter().flatten().count() * emitter.count()) as u64;
     let mask = TruthMask { size: receivers.size, pixels };
     Ok(ExactTruth { mask, rays, ms: start.elapsed().as_secs_f64() * 1e3 })
 }
 
-/// Decides one receiver; `scene_radius_m` is that of the scene's bounds. What replays start from.
+/// The exact share of an area light's points that a receiver sees. Undecided as soon as one of them is.
+#[must_use]
+pub fn of_area(scene: &Scene, casters: &Casters, emitter: &Emitter, receiver: &Receiver, scene_radius_m: f64) -> Truth {
+    let mut seen = 0_usize;
+    for verdict in of_points(scene, casters, emitter, receiver, scene_radius_m) {
+        match verdict {
+            Occlusion::Clear => seen += 1,
+            Occlusion::Blocked => {}
+            Occlusion::Doubtful => return Truth::Undecided,
+        }
+    }
+    // A count over a count is a visibility.
+    Visibility::new((seen as f64 / emitter.count() as f64) as f32).map_or(Truth::Undecided, Truth::Known)
+}
+
+/// What a receiver sees of each of an area light's points, in order. A point behind the receiver's surface, as the eye
+/// sees it, is blocked by it.
+pub fn of_points<'a>(
+    scene: &'a Scene,
+    casters: &'a Casters,
+    emitter: &'a Emitter,
+    receiver: &'a Receiver,
+    scene_radius_m: f64,
+) -> impl Iterator<Item = Occlusion> + 'a {
+    let eye = scene.camera.eye.as_dvec3();
+    let rounding_m = rounding_radius_m(receiver, eye);
+    let eye_side = scene.facing(receiver.triangle, eye.extend(1.0));
+    emitter.points_for(receiver.point_in_world).map(move |point| {
+        let side = scene.facing(receiver.triangle, point);
+        if side == 0.0 || (side > 0.0) != (eye_side > 0.0) {
+            return Occlusion::Blocked;
+        }
+        let segment = Segment::towards(receiver.point_in_world, point, scene_radius_m);
+        casters.occlusion(&segment, Some(receiver.triangle), rounding_m)
+    })
+}
+
+/// Decides one receiver, of an area light for its centre alone; `scene_radius_m` is that of the scene's bounds. What replays start from.
 #[must_use]
 pub fn of_receiver(casters: &Casters, light: &Light, receiver: &Receiver, eye: DVec3, scene_radius_m: f64) -> Truth {
     let segment = light.segment_from(receiver.point_in_world, scene_radius_m);

@@ -2,6 +2,8 @@
 //!
 //! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again.
 
+#[cfg(test)]
+mod area_tests;
 mod cross_check;
 mod entry;
 mod exact;
@@ -11,8 +13,8 @@ mod tests;
 
 pub use cross_check::{Disagreement, cross_check};
 pub use entry::{EntryError, decode, encode};
+pub use exact::{ExactTruth, exact, of_area, of_points, of_receiver};
 pub use key::TruthKey;
-pub use exact::{ExactTruth, exact, of_receiver};
 
 use crate::receiver::{PixelClass, Receiver, Receivers};
 

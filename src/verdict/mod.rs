@@ -20,11 +20,19 @@ pub use counts::{EdgeDistance, ErrorStats, PixelCounts, WorstCase};
 pub use judge::{Verdict, VerdictError, judge};
 pub use ledger::{CauseShare, Entry, Ledger, LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
 
+use crate::scene::Light;
+
 /// A pixel lit by a point, directional or spot light is wrong above this |technique − truth|.
 pub const WRONG_ABOVE_HARD: f64 = 0.5;
 
 /// A pixel lit by a rectangle or sphere light is wrong above this |technique − truth|.
 pub const WRONG_ABOVE_SOFT: f64 = 0.1;
+
+/// The |technique − truth| above which a pixel lit by `light` is wrong.
+#[must_use]
+pub fn wrong_above(light: &Light) -> f64 {
+    if light.is_area() { WRONG_ABOVE_SOFT } else { WRONG_ABOVE_HARD }
+}
 
 /// A pixel differs above this |technique − truth|: half of one step of an 8-bit picture.
 pub const DIFFERING_ABOVE: f64 = 1.0 / 512.0;

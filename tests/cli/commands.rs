@@ -113,6 +113,16 @@ fn scaffold_writes_the_scene_that_check_would_use_and_never_overwrites() {
     assert_eq!(fs::read_to_string(folder.path().join("scene.toml")).unwrap(), written);
 }
 
+/// The table of docs/matrix.md is what the techniques say; a page with any other line would not hold it.
+#[test]
+fn the_matrix_of_the_documentation_is_the_one_printed() {
+    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/matrix.md")).unwrap();
+    let printed = typed("list --matrix").returns(0).stdout;
+    assert!(printed.contains("| `map` | yes |"), "{printed}");
+    assert!(page.ends_with(&printed), "docs/matrix.md is not what `gnomon list --matrix` prints:\n{printed}");
+    assert!(!page.ends_with(&printed.replacen("yes", "no", 1)));
+}
+
 #[test]
 fn lists_name_scenes_and_every_parameter() {
     typed("list scenes").returns(0).says(&["scenes/triangle", "lamp, sun", "14 triangles"]);

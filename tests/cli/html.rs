@@ -28,7 +28,9 @@ fn reported(techniques: &[&str]) -> TempDir {
 
 fn opened(folder: &TempDir) -> Page {
     let page = Page::open(&folder.path().join("out/report.html"), (1400, 1000));
-    page.wait_until("document.readyState === 'complete' && document.querySelector('#viewer').dataset.ready !== undefined");
+    page.wait_until(
+        "document.readyState === 'complete' && document.querySelector('#viewer').dataset.ready !== undefined",
+    );
     page
 }
 
@@ -115,7 +117,9 @@ fn the_inspector_says_what_explain_says() {
     let folder = reported(&["map:size=64,bias=none"]);
     let page = opened(&folder);
     let wrong = "[...pixels.class.keys()].filter(i => Math.abs(pixels.technique[i] - pixels.truth[i]) > 0.5)";
-    page.value(&format!("var wanted = {wrong}[3]; wanted = [wanted % pixels.width, Math.floor(wanted / pixels.width)]"));
+    page.value(&format!(
+        "var wanted = {wrong}[3]; wanted = [wanted % pixels.width, Math.floor(wanted / pixels.width)]"
+    ));
     page.value("document.querySelector('#panes').scrollIntoView()");
     let on_screen = "(b => wanted.map((v, k) => (v + 0.5 - [viewport.left, viewport.top][k]) * viewport.zoom + [b.left, b.top][k]))\
                      (document.querySelector('#panes canvas').getBoundingClientRect())";

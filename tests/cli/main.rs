@@ -5,6 +5,7 @@
 mod browser;
 mod check;
 mod commands;
+mod compare;
 mod files;
 mod help;
 mod hostile;
@@ -15,3 +16,4 @@ mod refused;
 mod schema;
 mod specs;
 mod support;
+mod sweep;

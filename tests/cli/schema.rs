@@ -30,7 +30,8 @@ fn real_report() -> Value {
 fn a_real_report_is_valid_and_a_changed_one_is_not() {
     let report = real_report();
     assert_eq!(violations(&report), [""; 0]);
-    let status = |wanted: &str| report["runs"].as_array().unwrap().iter().position(|run| run["status"] == wanted).unwrap();
+    let status =
+        |wanted: &str| report["runs"].as_array().unwrap().iter().position(|run| run["status"] == wanted).unwrap();
     let (ok, unsupported) = (status("ok"), status("unsupported"));
     assert!(report["runs"].as_array().unwrap().iter().any(|run| !run["budget"].is_null()));
     // Controls: each change is one that a reader would stumble over.

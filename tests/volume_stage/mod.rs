@@ -15,6 +15,7 @@ use gnomon::technique::volume::{PixelCounts, PreparedVolume, Settings};
 use gnomon::technique::{Prepared, Spec};
 use gnomon::verdict::{Ledger, Verdict};
 use gnomon::watch::Unwatched;
+use std::collections::HashSet;
 use std::path::Path;
 use testing::{Shape, scene_of};
 
@@ -24,8 +25,11 @@ pub(crate) mod testing;
 /// Width and height of most pictures.
 pub(crate) const SIZE: UVec2 = UVec2::new(160, 120);
 
-/// The largest share of receivers that may be miscounted: rasterisers snap vertices to a grid of 1/256 pixel.
+/// The largest share of receivers that may be miscounted where the picture has few count edges.
 const MISCOUNTED: f64 = 5e-5;
+/// The largest share of receivers next to count edges: rasterisers snap vertices to a grid of 1/256 pixel, which moves
+/// an edge by at most 1/512 pixel along each axis, and of the two pixels' breadth next to an edge that is this share.
+const MISCOUNTED_AT_EDGES: f64 = 1.0 / 256.0;
 
 pub(crate) fn gpu() -> Gpu {
     Gpu::open().unwrap()
@@ -99,6 +103,8 @@ pub(crate) struct Run {
     pub(crate) ledger: Ledger,
     pub(crate) before_and_behind: (usize, usize),
     classes: Vec<PixelClass>,
+    /// Miscounted pixels at which a volume's surface meets what is seen.
+    touched: HashSet<usize>,
     width: usize,
 }
 
@@ -109,7 +115,7 @@ pub(crate) fn run(view: &View<'_>, question: &Question<'_>, typed: &str) -> Run 
     let prepared = prepare(view, question.light, &question.classes, typed);
     assert_eq!(prepared.run().unwrap().mask, evaluation.mask, "two runs differ");
     let pixels = evaluation.mask.pixels.len() as u32;
-    Run {
+    let mut run = Run {
         stencil: prepared.stencil().unwrap(),
         counts: (0..pixels).map(|pixel| prepared.counts(pixel)).collect(),
         before_and_behind: prepared.objects_before_and_behind(),
@@ -117,8 +123,13 @@ pub(crate) fn run(view: &View<'_>, question: &Question<'_>, typed: &str) -> Run 
         verdict: evaluation.verdict,
         ledger: evaluation.ledger,
         classes: question.classes.clone(),
+        touched: HashSet::new(),
         width: view.scene.image_size.x as usize,
-    }
+    };
+    // Many misses have other reasons, and looking at every face for each takes long.
+    let looked_at = run.miscounted().into_iter().filter(|at| !run.is_next_to_count_edge(*at)).take(100);
+    run.touched = looked_at.filter(|at| prepared.boundary_touches(*at as u32)).collect();
+    run
 }
 
 /// The same as [`run`] for the first light of a scene.
@@ -169,13 +180,21 @@ impl Run {
         self.classes.iter().filter(|class| **class == PixelClass::Asked).count()
     }
 
-    /// Asked pixels whose stencil is not what the f64 twin counts, and how many of them are next to no count edge.
+    fn asked_pixels(&self) -> impl Iterator<Item = usize> {
+        (0..self.counts.len()).filter(|&at| self.classes[at] == PixelClass::Asked)
+    }
+
+    /// Asked pixels whose stencil is not what the f64 twin counts.
+    fn miscounted(&self) -> Vec<usize> {
+        let is_off = |at: &usize| self.counts[*at].is_none_or(|counts| counts.stencil() != self.stencil[*at]);
+        self.asked_pixels().filter(is_off).collect()
+    }
+
+    /// How many pixels are miscounted, and how many of them are next to no count edge.
     pub(crate) fn miscounts(&self) -> (usize, usize) {
-        let off: Vec<usize> = (0..self.counts.len())
-            .filter(|&at| self.classes[at] == PixelClass::Asked)
-            .filter(|&at| self.counts[at].is_none_or(|counts| counts.stencil() != self.stencil[at]))
-            .collect();
-        (off.len(), off.iter().filter(|at| !self.is_next_to_count_edge(**at)).count())
+        let off = self.miscounted();
+        let is_at_edge = |at: &usize| self.is_next_to_count_edge(*at) || self.touched.contains(at);
+        (off.len(), off.iter().filter(|at| !is_at_edge(at)).count())
     }
 
     fn is_next_to_count_edge(&self, at: usize) -> bool {
@@ -189,11 +208,13 @@ impl Run {
                 .any(|(x, y)| self.counts[y as usize * self.width + x as usize] != own)
     }
 
-    /// Whether no more than [`MISCOUNTED`] of the receivers, plus one pixel for pictures too small for a share, are
-    /// miscounted, all of them next to a count edge.
+    /// Whether no more than [`MISCOUNTED`] of the receivers, or [`MISCOUNTED_AT_EDGES`] of those next to count edges,
+    /// plus one pixel for pictures too small for a share, are miscounted, all of them at a count edge.
     pub(crate) fn counts_exactly(&self) -> bool {
         let (off, off_edge) = self.miscounts();
-        off as f64 <= 1.0 + MISCOUNTED * self.asked() as f64 && off_edge == 0
+        let at_edges = self.asked_pixels().filter(|at| self.is_next_to_count_edge(*at)).count();
+        let allowed = (MISCOUNTED * self.asked() as f64).max(MISCOUNTED_AT_EDGES * at_edges as f64);
+        off as f64 <= 1.0 + allowed && off_edge == 0
     }
 
     /// Panics with numbers unless [`Run::counts_exactly`].

@@ -29,7 +29,9 @@ impl ResultsFolder {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => anyhow::bail!("{}: another gnomon is writing it", path.display()),
-            Err(TryLockError::Error(error)) => return Err(error).with_context(|| format!("{}: locking", path.display())),
+            Err(TryLockError::Error(error)) => {
+                return Err(error).with_context(|| format!("{}: locking", path.display()));
+            }
         }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).with_context(|| format!("{}: cannot be read", path.display()))?;

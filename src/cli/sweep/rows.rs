@@ -43,7 +43,8 @@ pub(super) fn plan<'s>(
     specs: &[Spec],
     shard: Shard,
 ) -> Vec<Row<'s>> {
-    let lit = scenes.iter().flat_map(|(_, scene)| lights(scene, name).into_iter().flatten().map(|light| (*scene, light)));
+    let lit =
+        scenes.iter().flat_map(|(_, scene)| lights(scene, name).into_iter().flatten().map(|light| (*scene, light)));
     let rows = lit.flat_map(|(scene, light)| specs.iter().map(move |spec| (scene, light, spec.clone())));
     let numbered = rows.enumerate().filter(|(index, _)| index % shard.of == shard.part - 1);
     numbered.map(|(index, (scene, light, spec))| Row { index, scene, light, spec }).collect()

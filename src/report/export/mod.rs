@@ -92,7 +92,10 @@ mod tests {
         let mut changed = report();
         changed.runs[0].typed = "map:size=1".to_owned();
         for exporter in EXPORTERS {
-            let (before, after) = ((exporter.write)(&report(), &Imagery::default()).unwrap(), (exporter.write)(&changed, &Imagery::default()).unwrap());
+            let (before, after) = (
+                (exporter.write)(&report(), &Imagery::default()).unwrap(),
+                (exporter.write)(&changed, &Imagery::default()).unwrap(),
+            );
             assert_ne!(before, after, "{}", exporter.name);
         }
     }

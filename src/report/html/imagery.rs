@@ -122,7 +122,8 @@ impl QuestionPixels {
     fn new(images: &QuestionImages<'_>) -> io::Result<Self> {
         let QuestionImages { classes, truth, receivers, occluders, meshes } = *images;
         let UVec2 { x, y } = truth.size;
-        let class: Vec<u8> = classes.iter().zip(&truth.pixels).map(|(class, truth)| class_number(*class, *truth)).collect();
+        let class: Vec<u8> =
+            classes.iter().zip(&truth.pixels).map(|(class, truth)| class_number(*class, *truth)).collect();
         let id = |id: Option<u32>| id.map_or(0, |id| id + 1);
         let receivers: Vec<u32> = receivers.pixels.iter().map(|r| id(r.map(|r| r.triangle))).collect();
         let occluders: Vec<u32> = occluders.iter().map(|triangle| id(*triangle)).collect();
@@ -148,7 +149,11 @@ impl RunPixels {
         }
         let stage = |stage: &Stage| {
             let causes: Vec<u8> = stage.causes.iter().map(|cause| *cause as u8).collect();
-            Ok(StagePixels { name: stage.name, value: Plane::of_values(&stage.values)?, cause: Plane::of_bytes(&causes)? })
+            Ok(StagePixels {
+                name: stage.name,
+                value: Plane::of_values(&stage.values)?,
+                cause: Plane::of_bytes(&causes)?,
+            })
         };
         Ok(Self {
             question,

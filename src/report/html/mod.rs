@@ -110,10 +110,11 @@ fn title(report: &Report) -> String {
 
 /// How many runs there are, and how they ended.
 fn headline(report: &Report) -> String {
-    let count = |what: &str, is: &dyn Fn(&super::model::Run) -> bool| match report.runs.iter().filter(|run| is(run)).count() {
-        0 => None,
-        n => Some(format!("{n} {what}")),
-    };
+    let count =
+        |what: &str, is: &dyn Fn(&super::model::Run) -> bool| match report.runs.iter().filter(|run| is(run)).count() {
+            0 => None,
+            n => Some(format!("{n} {what}")),
+        };
     let parts = [
         count("over budget", &|run| run.budget.is_some_and(|budget| !budget.met)),
         count("within budget", &|run| run.budget.is_some_and(|budget| budget.met)),

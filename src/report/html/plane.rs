@@ -48,7 +48,8 @@ impl Plane {
     /// Ids, or ascending numbers.
     pub(super) fn of_ids(ids: &[u32]) -> io::Result<Self> {
         let before = std::iter::once(&0).chain(ids);
-        let bytes: Vec<u8> = ids.iter().zip(before).flat_map(|(id, before)| id.wrapping_sub(*before).to_le_bytes()).collect();
+        let bytes: Vec<u8> =
+            ids.iter().zip(before).flat_map(|(id, before)| id.wrapping_sub(*before).to_le_bytes()).collect();
         Ok(Self { layout: Layout::Delta32, palette: None, data: packed(&bytes)? })
     }
 

@@ -106,7 +106,8 @@ fn summary_row(report: &Report, index: usize, has_pictures: bool) -> SummaryRow 
 pub(super) fn cost_rows(report: &Report) -> Vec<CostRow> {
     let row = |run: &Run| {
         let cost = run.cost.as_ref()?;
-        let ms = |of: fn(&crate::technique::GpuTime) -> f64| or_nothing(cost.gpu_ms.as_ref().map(|t| significant(of(t))));
+        let ms =
+            |of: fn(&crate::technique::GpuTime) -> f64| or_nothing(cost.gpu_ms.as_ref().map(|t| significant(of(t))));
         let count = |count: Option<u64>| or_nothing(count.map(grouped));
         let passes = cost.passes.iter().map(|pass| format!("{} {}", pass.name, significant(pass.ms)));
         Some(CostRow {

@@ -52,7 +52,8 @@ struct MScale {
 
 /// The colours of every picture.
 pub(in crate::report) fn page_colours() -> PageColours {
-    let cause = |cause: Cause| NamedCause { name: cause.name(), meaning: cause.meaning(), colour: colour_of_cause(cause) };
+    let cause =
+        |cause: Cause| NamedCause { name: cause.name(), meaning: cause.meaning(), colour: colour_of_cause(cause) };
     PageColours {
         classes: UNCOMPARED.iter().map(|class| Named { name: class.name, colour: channels(class.colour) }).collect(),
         causes: Cause::ALL.map(cause).into(),

@@ -2,7 +2,8 @@
 
 use super::{
     super::{
-        Bounds, Camera, Far,
+        Camera, Far,
+        distance::distance_to_triangle,
         error::SceneError,
         file::{CameraEntry, FarEntry},
         source::Source,
@@ -18,7 +19,7 @@ const DEFAULT_FOV_Y_DEG: f64 = 45.0;
 
 /// Share of the distance to the nearest geometry at which a fitted near plane lies: far enough in front of it.
 const NEAR_SHARE: f64 = 1e-3;
-/// Smallest fitted near plane as a share of the scene's extent, for eyes inside the geometry's box.
+/// Smallest fitted near plane as a share of the scene's extent, for eyes on the geometry.
 const NEAR_FLOOR_SHARE: f64 = 1e-6;
 /// Smallest sine of the angle between `up` and the view: below it, f32 rounding of the eye decides where up is.
 const PARALLEL_SINE: f64 = 1e-5;
@@ -72,10 +73,11 @@ fn far(entry: &Entry<'_>, camera: &CameraEntry, frame: &Frame, near_m: f64) -> R
     }
 }
 
-/// In front of the nearest mesh's box.
+/// In front of the nearest triangle, wherever its mesh's box may reach.
 fn fitted_near_m(eye: DVec3, geometry: &Geometry) -> f64 {
-    let distance = |b: &Bounds| (eye.clamp(b.min, b.max) - eye).length();
-    let nearest = geometry.boxes.iter().map(distance).fold(f64::INFINITY, f64::min);
+    let corners = |triangle: &[u32; 3]| triangle.map(|v| geometry.positions[v as usize].as_dvec3());
+    let distances = geometry.triangles.iter().map(|triangle| distance_to_triangle(eye, corners(triangle)));
+    let nearest = distances.fold(f64::INFINITY, f64::min);
     let bounds = geometry.bounds();
     let floor = NEAR_FLOOR_SHARE * (bounds.max - bounds.min).max_element();
     (NEAR_SHARE * nearest).max(floor)

@@ -12,7 +12,10 @@ pub(super) fn warnings(scene: &Scene) -> Vec<String> {
     let eye = scene.camera.eye.as_dvec3();
     let eye = touched(scene, eye, &in_plane(scene, eye)).map(|touched| format!("the camera's eye {touched}"));
     let lights = scene.lights.iter().filter_map(|light| match light.kind {
-        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
+        LightKind::Point { position, .. }
+        | LightKind::Spot { position, .. }
+        | LightKind::Rectangle { position, .. }
+        | LightKind::Sphere { position, .. } => {
             let in_plane = in_plane(scene, position.as_dvec3());
             let contact = touched(scene, position.as_dvec3(), &in_plane).or_else(|| aligned(scene, &in_plane))?;
             Some(format!("light `{}` {contact}", light.name))

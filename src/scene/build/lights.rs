@@ -3,7 +3,7 @@
 use super::{
     super::{Falloff, Light, LightKind, LightingMode, error::SceneError, file::LightEntry, source::Source},
     check::Entry,
-    transform::{Frame, rounded, unit},
+    transform::{Frame, MAX_COORDINATE_M, rounded, unit},
 };
 use glam::DVec3;
 use std::collections::HashSet;
@@ -14,6 +14,11 @@ const DEFAULT_CONE_DEG: f64 = 40.0;
 /// The default `inner_deg` as a share of `cone_deg`.
 const DEFAULT_INNER_SHARE: f64 = 0.75;
 const DEFAULT_WARN_POWER: f64 = 1.0;
+/// Smaller sides are zero in f32 arithmetic; a light that small is a point.
+const MIN_SIZE_M: f64 = 1e-30;
+const DEFAULT_SAMPLES: u32 = 64;
+/// More would take minutes a picture and say no more.
+const MAX_SAMPLES: u32 = 4096;
 /// Characters that some file system refuses: lights' names become parts of file names.
 const REFUSED_IN_NAMES: &str = "/\\:*?\"<>|";
 
@@ -22,11 +27,17 @@ enum Kind {
     Point,
     Directional,
     Spot,
+    Rectangle,
+    Sphere,
 }
 
-const KINDS: [(&str, Kind); 3] = [("point", Kind::Point), ("directional", Kind::Directional), ("spot", Kind::Spot)];
-/// Kinds the format names and this version cannot load.
-const LATER_KINDS: [&str; 2] = ["rectangle", "sphere"];
+const KINDS: [(&str, Kind); 5] = [
+    ("point", Kind::Point),
+    ("directional", Kind::Directional),
+    ("spot", Kind::Spot),
+    ("rectangle", Kind::Rectangle),
+    ("sphere", Kind::Sphere),
+];
 
 #[derive(Clone, Copy, Default, PartialEq)]
 enum FalloffKind {
@@ -48,6 +59,8 @@ impl Kind {
             Self::Spot => {
                 &["position", "target", "range", "attenuation", "cone_deg", "inner_deg", "falloff", "warn_power"]
             }
+            Self::Rectangle => &["position", "target", "range", "width", "height", "samples"],
+            Self::Sphere => &["position", "target", "range", "radius", "samples"],
         }
     }
 }
@@ -113,6 +126,8 @@ impl Builder<'_> {
                 LightKind::Directional { towards_light: rounded(-travel) }
             }
             Kind::Spot => self.spot()?,
+            Kind::Rectangle => self.rectangle()?,
+            Kind::Sphere => self.sphere()?,
         };
         let range_m = match self.light.range {
             Some(range) => self.frame.length(self.entry.number("range", range, |v| v > 0.0, "above 0 metres")?),
@@ -123,14 +138,6 @@ impl Builder<'_> {
     }
 
     fn kind(&self) -> Result<Kind, SceneError> {
-        if LATER_KINDS.contains(&self.light.kind.as_str()) {
-            let problem = format!(
-                "= {:?}: this version of gnomon knows point, directional and spot lights; area lights come with its \
-                 soft shadows",
-                self.light.kind
-            );
-            return Err(self.entry.fault("kind", problem));
-        }
         self.entry.choice("kind", &self.light.kind, &KINDS)
     }
 
@@ -197,6 +204,47 @@ impl Builder<'_> {
         let position = self.position()?;
         let aim = rounded(self.aim(position)?);
         Ok(LightKind::Point { position: rounded(position), aim, attenuation: self.attenuation()? })
+    }
+
+    fn rectangle(&self) -> Result<LightKind, SceneError> {
+        let position = self.position()?;
+        let aim = self.aim(position)?;
+        let forward = unit(aim - position).unwrap_or(DVec3::NEG_Y);
+        let across = unit(forward.cross(DVec3::Y)).filter(|_| forward.x != 0.0 || forward.z != 0.0);
+        let right = across.unwrap_or(DVec3::X);
+        let half = |key, value| Ok::<f64, SceneError>(0.5 * self.length(key, value)?);
+        Ok(LightKind::Rectangle {
+            position: rounded(position),
+            aim: rounded(aim),
+            half_width: rounded(right * half("width", self.light.width)?),
+            half_height: rounded(right.cross(forward) * half("height", self.light.height)?),
+            samples: self.samples()?,
+        })
+    }
+
+    fn sphere(&self) -> Result<LightKind, SceneError> {
+        let position = self.position()?;
+        Ok(LightKind::Sphere {
+            position: rounded(position),
+            aim: rounded(self.aim(position)?),
+            radius_m: self.length("radius", self.light.radius)? as f32,
+            samples: self.samples()?,
+        })
+    }
+
+    /// A length that the light cannot be without, in metres of the rebased world.
+    fn length(&self, key: &'static str, value: Option<f64>) -> Result<f64, SceneError> {
+        let metres = self.required(key, value)?;
+        let metres =
+            self.entry.number(key, metres, |v| (MIN_SIZE_M..=MAX_COORDINATE_M).contains(&v), "1e-30 to 1e12 metres")?;
+        Ok(self.frame.length(metres))
+    }
+
+    fn samples(&self) -> Result<u32, SceneError> {
+        let samples = self.light.samples.unwrap_or(DEFAULT_SAMPLES);
+        let range = format!("1 to {MAX_SAMPLES}");
+        self.entry.number("samples", samples.into(), |v| v >= 1.0 && v <= MAX_SAMPLES.into(), &range)?;
+        Ok(samples)
     }
 
     fn spot(&self) -> Result<LightKind, SceneError> {

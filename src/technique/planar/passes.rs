@@ -6,17 +6,15 @@ use super::membership::{Membership, runs};
 use super::settings::{Overlap, Placement, Projection, Settings};
 use super::{ShadowPlane, flatten};
 use crate::gpu::shader::{self, Wgsl, wgsl};
-use crate::gpu::{CORNER_LAYOUT, Geometry, Gpu, GpuError, PassRecord, Recorder};
+use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::Job;
-use glam::{DMat4, UVec2};
+use glam::DMat4;
 use std::ops::Range;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BlendComponent, BlendFactor, BlendOperation, BlendState,
-    BufferUsages, Color, ColorTargetState, ColorWrites, CompareFunction, DepthBiasState, DepthStencilState, Extent3d,
-    Features, FragmentState, LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-    RenderPipeline, RenderPipelineDescriptor, StencilFaceState, StencilOperation, StencilState, StoreOp, Texture,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, VertexState,
+    BindGroup, BlendComponent, BlendFactor, BlendOperation, BlendState, Color, ColorTargetState, ColorWrites,
+    CompareFunction, DepthBiasState, DepthStencilState, Features, LoadOp, Operations, RenderPassColorAttachment,
+    RenderPassDepthStencilAttachment, RenderPipeline, StencilFaceState, StencilOperation, StencilState, StoreOp,
+    Texture, TextureFormat, TextureUsages, TextureView,
 };
 
 const SHADOW: Wgsl = wgsl!("planar/shadow.wgsl");
@@ -82,8 +80,9 @@ impl PlanarPasses {
             })
             .collect::<Result<_, GpuError>>()?;
         gpu.scoped("the planar shadows' set-up", || {
-            let layers = texture(gpu, size, LAYERS, TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC);
-            let depth_stencil = texture(gpu, size, DEPTH_STENCIL, TextureUsages::RENDER_ATTACHMENT);
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+            let layers = gpu.texture("layers of shadow", size, LAYERS, usage);
+            let depth_stencil = gpu.texture("receivers", size, DEPTH_STENCIL, TextureUsages::RENDER_ATTACHMENT);
             let receiver_pipeline = receiver_pipeline(gpu);
             let shadow_pipeline = shadow_pipeline(gpu, settings);
             let clip_from_world = scene.camera.clip_from_world(size);
@@ -209,46 +208,18 @@ fn clip_from_caster(settings: &Settings, plane: &ShadowPlane, clip_from_world: &
     }
 }
 
-fn texture(gpu: &Gpu, size: UVec2, format: TextureFormat, usage: TextureUsages) -> Texture {
-    gpu.device.create_texture(&TextureDescriptor {
-        label: Some("planar shadows"),
-        size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
-}
-
 fn matrix(gpu: &Gpu, pipeline: &RenderPipeline, matrix: &DMat4) -> BindGroup {
-    let uniform = gpu.device.create_buffer_init(&BufferInitDescriptor {
-        label: None,
-        contents: bytemuck::bytes_of(&matrix.as_mat4()),
-        usage: BufferUsages::UNIFORM,
-    });
-    gpu.device.create_bind_group(&BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
-    })
+    let uniform = gpu.uniform("planar matrix", matrix.as_mat4());
+    gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()])
 }
 
 /// The nearest triangle of each pixel leaves its reference; drawn with the G-buffer's own vertex shader and state, so
 /// that both find the same one.
 fn receiver_pipeline(gpu: &Gpu) -> RenderPipeline {
-    let module = gpu.shader("planar receivers", &[shader::GBUFFER]);
-    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("planar receivers"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(CORNER_LAYOUT)],
-        },
-        primitive: Default::default(),
+    gpu.render_pipeline(&Drawing {
+        label: "planar receivers",
+        files: &[shader::GBUFFER],
+        vertices: &[Some(CORNER_LAYOUT)],
         depth_stencil: Some(DepthStencilState {
             format: DEPTH_STENCIL,
             depth_write_enabled: Some(true),
@@ -256,15 +227,11 @@ fn receiver_pipeline(gpu: &Gpu) -> RenderPipeline {
             stencil: on_both_faces(CompareFunction::Always, StencilOperation::Replace),
             bias: Default::default(),
         }),
-        multisample: Default::default(),
-        fragment: None,
-        multiview_mask: None,
-        cache: None,
+        ..Drawing::default()
     })
 }
 
 fn shadow_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
-    let module = gpu.shader("planar shadow", &[SHADOW]);
     // Once drawn, a pixel's stencil no longer equals the reference: zero for a mask, so that no plane's shadow is read
     // as another plane; one where all of the picture started at zero.
     let pass_op = match (settings.overlap, settings.placement) {
@@ -283,16 +250,10 @@ fn shadow_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
     let added =
         BlendComponent { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
     let blend = (settings.overlap == Overlap::Blend).then_some(BlendState { color: added, alpha: added });
-    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("planar shadow"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(CORNER_LAYOUT)],
-        },
-        primitive: Default::default(),
+    gpu.render_pipeline(&Drawing {
+        label: "planar shadow",
+        files: &[SHADOW],
+        vertices: &[Some(CORNER_LAYOUT)],
         depth_stencil: Some(DepthStencilState {
             format: DEPTH_STENCIL,
             depth_write_enabled: Some(false),
@@ -300,15 +261,8 @@ fn shadow_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
             stencil: on_both_faces(CompareFunction::Equal, pass_op),
             bias: compared.1,
         }),
-        multisample: Default::default(),
-        fragment: Some(FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(ColorTargetState { format: LAYERS, blend, write_mask: ColorWrites::ALL })],
-        }),
-        multiview_mask: None,
-        cache: None,
+        targets: &[Some(ColorTargetState { format: LAYERS, blend, write_mask: ColorWrites::ALL })],
+        ..Drawing::default()
     })
 }
 

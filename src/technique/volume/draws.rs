@@ -11,10 +11,7 @@ use crate::gpu::Gpu;
 use crate::technique::Job;
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, IndexFormat, RenderPass, RenderPipeline,
-};
+use wgpu::{BindGroup, Buffer, BufferUsages, IndexFormat, RenderPass, RenderPipeline};
 
 /// `Eye` of `shaders/volume/clip.wgsl`.
 #[repr(C)]
@@ -79,9 +76,9 @@ impl<'b> Builder<'b> {
             padding: 0,
             more_padding: [0; 2],
         };
-        let vertices = init(gpu, "volume vertices", bytemuck::cast_slice(&volumes.vertices), BufferUsages::VERTEX);
+        let vertices = gpu.buffer("volume vertices", &volumes.vertices, BufferUsages::VERTEX);
         let eye_uniform = eye_buffer(gpu, eye);
-        let extrusion_uniform = uniform(gpu, bytemuck::bytes_of(&extrusion));
+        let extrusion_uniform = gpu.uniform("extrusion", extrusion);
         let bytes = vertices.size() + eye_uniform.size() + extrusion_uniform.size();
         Self {
             gpu,
@@ -136,7 +133,7 @@ impl<'b> Builder<'b> {
             return Vec::new();
         };
         let pipeline = near_pipeline(self.gpu, self.settings);
-        let matrix = uniform(self.gpu, bytemuck::bytes_of(&clip_from_caster));
+        let matrix = self.gpu.uniform("near projection", clip_from_caster);
         self.bytes += matrix.size();
         let bindings = bind(self.gpu, &pipeline, &[&matrix]);
         vec![Draw { pipeline, bindings, vertices, indices, count }]
@@ -145,7 +142,7 @@ impl<'b> Builder<'b> {
     /// An index list on the device; `None` if it is empty.
     fn indices(&mut self, list: &[u32]) -> Option<(Buffer, u32)> {
         (!list.is_empty()).then(|| {
-            let buffer = init(self.gpu, "volume indices", bytemuck::cast_slice(list), BufferUsages::INDEX);
+            let buffer = self.gpu.buffer("volume indices", list, BufferUsages::INDEX);
             self.bytes += buffer.size();
             (buffer, list.len() as u32)
         })
@@ -154,7 +151,7 @@ impl<'b> Builder<'b> {
 
 /// The camera's uniform on the device.
 pub(super) fn eye_buffer(gpu: &Gpu, eye: &Eye) -> Buffer {
-    uniform(gpu, bytemuck::bytes_of(&eye_uniform(eye)))
+    gpu.uniform("eye", eye_uniform(eye))
 }
 
 fn eye_uniform(eye: &Eye) -> EyeUniform {
@@ -166,22 +163,10 @@ fn eye_uniform(eye: &Eye) -> EyeUniform {
     }
 }
 
-fn uniform(gpu: &Gpu, contents: &[u8]) -> Buffer {
-    init(gpu, "volume uniform", contents, BufferUsages::UNIFORM)
-}
-
-fn init(gpu: &Gpu, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
-    gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
-}
-
 /// Uniforms bound in order.
-pub(super) fn bind(gpu: &Gpu, pipeline: &RenderPipeline, uniforms: &[&Buffer]) -> BindGroup {
-    let entries: Vec<BindGroupEntry<'_>> = (0..)
-        .zip(uniforms)
-        .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
-    let layout = &pipeline.get_bind_group_layout(0);
-    gpu.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+fn bind(gpu: &Gpu, pipeline: &RenderPipeline, uniforms: &[&Buffer]) -> BindGroup {
+    let resources: Vec<_> = uniforms.iter().map(|buffer| buffer.as_entire_binding()).collect();
+    gpu.bind(&pipeline.get_bind_group_layout(0), &resources)
 }
 
 #[cfg(test)]

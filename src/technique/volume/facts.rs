@@ -87,6 +87,10 @@ pub(super) fn lookup_facts(volume: &PreparedVolume<'_>, pixel: u32) -> Result<Fa
     if counts.is_tied {
         facts.push(fact("tie", "the shadow ray runs through an edge or a corner".to_owned()));
     }
+    if volume.boundary_touches(pixel) {
+        let what = "a volume's own surface meets it within 1/256 pixel and the depth's rounding";
+        facts.push(fact("count edge", what.to_owned()));
+    }
     facts.extend(crossed.iter().take(LISTED).map(|&triangle| {
         fact("inside the volume of", format!("triangle {triangle} of {}", scene.mesh_of(triangle).name))
     }));

@@ -8,6 +8,7 @@
 //! the stencil counts (`stencil-overflow`). Formulas: docs/volume.md.
 
 mod assembly;
+mod boundary;
 mod casting;
 mod count;
 mod draws;

@@ -1,7 +1,7 @@
 //! The GPU side: the scene's depth once, then per run the volumes into the stencil and the stencil into visibilities.
 
 use super::assembly::Faces;
-use super::draws::{Builder, Draw, bind, eye_buffer};
+use super::draws::{Builder, Draw, eye_buffer};
 use super::eye::Eye;
 use super::pipelines::{resolve_pipeline, scene_pipeline};
 use super::scissor::Rectangle;
@@ -11,9 +11,8 @@ use super::volumes::Volumes;
 use crate::gpu::{Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::{Job, ReceiverBuffer};
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, ComputePipeline, Extent3d, LoadOp, Operations,
-    RenderPass, RenderPassDepthStencilAttachment, StoreOp, Texture, TextureAspect, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    BindGroup, BindingResource, ComputePipeline, LoadOp, Operations, RenderPass, RenderPassDepthStencilAttachment,
+    StoreOp, Texture, TextureAspect, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
 };
 
 /// The camera's depth and stencil, and everything that is drawn into it.
@@ -46,16 +45,8 @@ impl VolumePasses {
 
     fn build(job: &Job<'_>, settings: &Settings, eye: &Eye, volumes: &Volumes, receivers: &ReceiverBuffer) -> Self {
         let size = job.scene.image_size;
-        let buffer = job.gpu.device.create_texture(&TextureDescriptor {
-            label: Some("depth and stencil"),
-            size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: settings.format.texture_format(),
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let buffer = job.gpu.texture("depth and stencil", size, settings.format.texture_format(), usage);
         let mut builder = Builder::new(job, settings, eye, volumes);
         let mut passes = Vec::new();
         if let Some((clip_from_caster, corners)) = &volumes.near_casters {
@@ -81,11 +72,7 @@ impl VolumePasses {
                 chunk.visibilities.as_entire_binding(),
                 BindingResource::TextureView(&counts),
             ];
-            let mut binding = 0..;
-            let entries =
-                resources.map(|resource| BindGroupEntry { binding: binding.next().unwrap_or_default(), resource });
-            let layout = &resolve.get_bind_group_layout(0);
-            job.gpu.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+            job.gpu.bind(&resolve.get_bind_group_layout(0), &resources)
         });
         Self {
             view: buffer.create_view(&Default::default()),
@@ -105,7 +92,8 @@ impl VolumePasses {
     fn draw_scene(&self, job: &Job<'_>, settings: &Settings, eye: &Eye) -> Result<(), GpuError> {
         let recorder = job.gpu.scoped("recording the scene's depth", || {
             let pipeline = scene_pipeline(job.gpu, settings);
-            let bindings = bind(job.gpu, &pipeline, &[&eye_buffer(job.gpu, eye)]);
+            let eye_uniform = eye_buffer(job.gpu, eye);
+            let bindings = job.gpu.bind(&pipeline.get_bind_group_layout(0), &[eye_uniform.as_entire_binding()]);
             let mut recorder = Recorder::new(job.gpu);
             let clear = Operations { load: LoadOp::Clear(eye.clear_depth()), store: StoreOp::Store };
             let attachment = self.attachment(Some(clear), LoadOp::Clear(0));

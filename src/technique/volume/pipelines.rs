@@ -4,11 +4,10 @@
 use super::settings::Settings;
 use super::states::{Counting, Half, Side};
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::gpu::{CORNER_LAYOUT, Gpu};
+use crate::gpu::{CORNER_LAYOUT, Drawing, Gpu};
 use wgpu::{
-    CompareFunction, ComputePipeline, ComputePipelineDescriptor, DepthStencilState, Face, PrimitiveState,
-    RenderPipeline, RenderPipelineDescriptor, StencilFaceState, StencilOperation, StencilState, VertexAttribute,
-    VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
+    CompareFunction, ComputePipeline, DepthStencilState, Face, PrimitiveState, RenderPipeline, StencilFaceState,
+    StencilOperation, StencilState, VertexAttribute, VertexBufferLayout, VertexFormat, VertexStepMode,
 };
 
 const CLIP: Wgsl = wgsl!("volume/clip.wgsl");
@@ -103,14 +102,7 @@ pub(super) fn near_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
 
 /// Turns counts into visibilities.
 pub(super) fn resolve_pipeline(gpu: &Gpu) -> ComputePipeline {
-    gpu.device.create_compute_pipeline(&ComputePipelineDescriptor {
-        label: Some("volume resolve"),
-        layout: None,
-        module: &gpu.shader("volume resolve", &[RECEIVER, RESOLVE]),
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    })
+    gpu.compute_pipeline("volume resolve", &[RECEIVER, RESOLVE])
 }
 
 fn primitive(cull_mode: Option<Face>, unclipped_depth: bool) -> PrimitiveState {
@@ -140,20 +132,6 @@ fn pipeline(
     primitive: PrimitiveState,
     depth_stencil: DepthStencilState,
 ) -> RenderPipeline {
-    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some(label),
-        layout: None,
-        vertex: VertexState {
-            module: &gpu.shader(label, files),
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(layout)],
-        },
-        primitive,
-        depth_stencil: Some(depth_stencil),
-        multisample: Default::default(),
-        fragment: None,
-        multiview_mask: None,
-        cache: None,
-    })
+    let (vertices, depth_stencil) = (&[Some(layout)], Some(depth_stencil));
+    gpu.render_pipeline(&Drawing { label, files, vertices, primitive, depth_stencil, ..Drawing::default() })
 }

@@ -86,7 +86,12 @@ impl<'j> PreparedVolume<'j> {
     /// What the stencil should hold at a pixel (`y * width + x`); `None` for background.
     #[must_use]
     pub fn counts(&self, pixel: u32) -> Option<PixelCounts> {
-        let receiver = self.receiver(pixel)?;
+        Some(self.counts_of(pixel, &self.receiver(pixel)?))
+    }
+
+    /// The same if the pixel showed this receiver.
+    #[must_use]
+    pub fn counts_of(&self, pixel: u32, receiver: &Receiver) -> PixelCounts {
         let at_receiver = self.counter.at(receiver.point_in_world, Some(receiver.triangle));
         let at_far = self.eye.far_m.map(|far_m| self.counter.at(self.eye.point_at(pixel, far_m), None));
         // A surface behind the far plane is not drawn: the stencil counts up to the plane.
@@ -99,13 +104,13 @@ impl<'j> PreparedVolume<'j> {
         let reached = at_surface.reached() - cut_at_far.behind;
         let from_near = reached - at_near.before;
         let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x);
-        Some(PixelCounts {
+        PixelCounts {
             crossed: at_receiver.endless,
             reached,
             from_near,
             drawn: if is_drawn { from_near } else { 0 },
             is_tied: [at_surface, cut_at_far, at_near].iter().any(|count| count.is_tied),
-        })
+        }
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {

@@ -2,7 +2,7 @@
 
 use super::assembly::{Faces, Plan, VolumeVertex};
 use super::casting::{CastingObject, casting_objects};
-use super::extrude::Reach;
+use super::extrude::{Reach, extrude};
 use super::eye::Eye;
 use super::near_projection::clip_from_caster;
 use super::pyramid::Pyramid;
@@ -10,7 +10,7 @@ use super::settings::{Caps, Count, Length, Settings};
 use super::states::Side;
 use crate::inspect::weld;
 use crate::scene::{Light, Scene};
-use glam::Mat4;
+use glam::{DVec3, DVec4, Mat4};
 
 /// A finite volume's automatic length in extents of the scene: no shadow within it is longer.
 const AUTOMATIC_EXTENTS: f64 = 2.0;
@@ -32,11 +32,26 @@ pub(super) struct Volumes {
     pub(super) before: Faces,
     /// With zp-plus: the projection of casters onto the near plane, and their corners.
     pub(super) near_casters: Option<(Mat4, Vec<u32>)>,
+    /// Homogeneous light.
+    light: DVec4,
+    /// True if vertices are moved by the vertex shader.
+    extrudes_on_gpu: bool,
     /// True where zp-plus fell back to counting behind, because the light lies in the near plane.
     pub(super) fell_back: bool,
 }
 
 impl Volumes {
+    /// Where a volume vertex is drawn: homogeneous, rebased world.
+    pub(super) fn position(&self, index: u32) -> DVec4 {
+        let [x, y, z, w] = self.vertices[index as usize].map(f64::from);
+        let is_unmoved = self.extrudes_on_gpu && w == 0.0 && index + 1 < self.vertices.len() as u32;
+        if is_unmoved {
+            extrude(DVec3::new(x, y, z).as_vec3(), self.light, self.reach).as_dvec4()
+        } else {
+            DVec4::new(x, y, z, w)
+        }
+    }
+
     /// Finds silhouettes, classifies objects and assembles their volumes.
     pub(super) fn new(scene: &Scene, light: &Light, settings: &Settings, eye: &Eye) -> Self {
         let welded = weld(&scene.positions);
@@ -88,7 +103,18 @@ impl Volumes {
             .filter(|_| settings.count == Count::ZpPlus)
             .map(|matrix| (matrix, objects.iter().flat_map(corners).collect()));
         let vertices = plan.vertices(&welded.positions(&scene.positions));
-        Self { sides, reach, vertices, behind, before, near_casters, fell_back, objects }
+        Self {
+            sides,
+            reach,
+            vertices,
+            behind,
+            before,
+            near_casters,
+            light: homogeneous,
+            extrudes_on_gpu: settings.extrudes_on_gpu,
+            fell_back,
+            objects,
+        }
     }
 }
 

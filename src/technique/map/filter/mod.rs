@@ -4,7 +4,9 @@
 //! line in [`registry`].
 
 mod nearest;
+mod pcf_bilinear;
 mod pcf_box;
+mod pcf_poisson;
 
 use crate::gpu::shader::Wgsl;
 use crate::technique::param::Choice;
@@ -13,7 +15,7 @@ use glam::{DVec2, IVec2};
 /// Every filter.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Filter] {
-    &[&nearest::Nearest, &pcf_box::PcfBox]
+    &[&nearest::Nearest, &pcf_box::PcfBox, &pcf_bilinear::PcfBilinear, &pcf_poisson::PcfPoisson]
 }
 
 /// A filter over comparison results.
@@ -50,9 +52,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn weights_add_up_to_one_within_the_radius(u in 0.0..64.0_f64, v in 0.0..64.0_f64, kernel in 1..=32_u32) {
+        fn weights_add_up_to_one_within_the_radius(u in 0.0..64.0_f64, v in 0.0..64.0_f64, number in 1..=32_u32) {
             for filter in registry() {
                 let name = filter.choice().name;
+                let kernel = filter.choice().number.map_or(1, |range| number.clamp(range.min, range.max));
                 let taps = taps(name, kernel, DVec2::new(u, v));
                 prop_assert!((taps.iter().map(|t| t.1).sum::<f64>() - 1.0).abs() < 1e-12);
                 let own = DVec2::new(u, v).floor();
@@ -62,9 +65,25 @@ mod tests {
         }
 
         #[test]
-        fn one_tap_box_is_nearest(u in 0.0..64.0_f64, v in 0.0..64.0_f64) {
+        fn one_tap_is_nearest(u in 0.0..64.0_f64, v in 0.0..64.0_f64) {
             let at = DVec2::new(u, v);
             prop_assert_eq!(taps("pcf-box", 1, at), taps("nearest", 1, at));
+            prop_assert_eq!(taps("pcf-poisson", 1, at), taps("nearest", 1, at));
+        }
+
+        #[test]
+        fn the_weight_left_of_an_edge_along_the_texels_is_the_kernels_coverage(u in 20.0..44.0_f64, n in 1..=16_u32) {
+            const EDGE: i32 = 32;
+            let left_of_edge = |name| {
+                let taps = taps(name, n, DVec2::new(u, 0.5));
+                taps.iter().filter(|(texel, _)| texel.x < EDGE).map(|(_, weight)| weight).sum::<f64>()
+            };
+            let from_edge = f64::from(EDGE) - u;
+            // A window of n texels' width, moved continuously; a box snaps to whole texels.
+            let n = f64::from(n);
+            let coverage = (0.5 + from_edge / n).clamp(0.0, 1.0);
+            prop_assert!((left_of_edge("pcf-bilinear") - coverage).abs() < 1e-12);
+            prop_assert!((left_of_edge("pcf-box") - coverage).abs() <= 0.5 / n + 1e-12);
         }
     }
 }

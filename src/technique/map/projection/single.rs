@@ -116,7 +116,9 @@ fn view(scene: &Scene, light: &Light, fit: &Fit, visible: &[DVec3]) -> Result<Vi
                 window: Window::square((0.5 * full_rad).tan()),
             })
         }
-        LightKind::Point { position, aim, .. } => {
+        LightKind::Point { position, aim, .. }
+        | LightKind::Rectangle { position, aim, .. }
+        | LightKind::Sphere { position, aim, .. } => {
             let position = position.as_dvec3();
             let forward = (aim.as_dvec3() - position).try_normalize().unwrap_or(DVec3::NEG_Y);
             let light_view_from_world = look(position, forward);

@@ -1,0 +1,100 @@
+//! Faults planted in every shader file: each must be noticed, as pixels whose answer the f64 twin cannot explain. A
+//! check that a broken shader passes proves nothing, so a shader file without a fault here is a failure too.
+
+use super::{Effort, View, evaluate};
+use crate::cause::Cause;
+use crate::gpu::Gpu;
+use crate::scene::{LoadOptions, Scene, load};
+use crate::technique::{Spec, shader_modules};
+use crate::watch::Unwatched;
+use glam::UVec2;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A shader file, text in it, what stands there instead, and a technique that the change must break.
+type Fault = (&'static str, &'static str, &'static str, &'static str);
+
+const FAULTS: &[Fault] = &[
+    ("gbuffer.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world.yxz, 1.0)", "planar"),
+    ("shared/receiver.wgsl", "return thread.x +", "return thread.x / 2u +", "map"),
+    ("map/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", "map"),
+    ("map/gather.wgsl", "texels[index], 0)", "texels[index] + 1u, 0)", "map"),
+    ("map/lookup.wgsl", "lookup.depth_sign * bias_depth", "-lookup.depth_sign * bias_depth", "map"),
+    ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
+    ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
+    ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),
+    ("map/filter/pcf_poisson.wgsl", "RADIUS_TEXELS / 1024.0", "RADIUS_TEXELS / 900.0", "map:filter=pcf-poisson"),
+    ("planar/shadow.wgsl", "vec4f(position, 1.0)", "vec4f(position, 1.01)", "planar"),
+    ("projective_texture/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", PROJECTED),
+    ("projective_texture/lookup.wgsl", "uv * lookup.texels", "uv.yx * lookup.texels", PROJECTED),
+    (
+        "volume/clip.wgsl",
+        "eye.clip_from_world * position_in_world",
+        "eye.clip_from_world * position_in_world.yxzw",
+        "volume",
+    ),
+    ("volume/extruded.wgsl", "- extrusion.light.xyz", "+ extrusion.light.xyz", "volume:extrude=gpu"),
+    ("volume/given.wgsl", "clipped(position_in_world)", "clipped(position_in_world.yxzw)", "volume:extrude=cpu"),
+    (
+        "volume/near.wgsl",
+        "projection.clip_from_caster * position_in_world",
+        "vec4f(position_in_world.xz, 0.5, 1.0)",
+        ZP_PLUS,
+    ),
+    ("volume/resolve.wgsl", "count == 0u", "count <= 1u", "volume"),
+];
+const PROJECTED: &str = "projective-texture";
+const ZP_PLUS: &str = "volume:count=zp-plus";
+
+/// Large enough for shadows of some thousand pixels.
+const SIZE: UVec2 = UVec2::new(200, 150);
+/// Pixels that rasterisers and rounding may put on the other side of an edge in such a picture.
+const MOST_BY_PRECISION: u64 = 8;
+
+fn scene() -> Scene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/torus");
+    load(&folder, &LoadOptions { size: Some(SIZE), ..LoadOptions::default() }).unwrap()
+}
+
+/// Whether anything notices: an error, or more pixels than rounding explains. The view is that of a sound device.
+fn is_noticed(gpu: &Gpu, scene: &Scene, typed: &str) -> bool {
+    let sound = Gpu::open().unwrap();
+    let sound_view = View::new(&sound, scene).unwrap();
+    let view = View::new(gpu, scene).unwrap();
+    let view = View { receivers: sound_view.receivers, ..view };
+    scene.lights.iter().any(|light| {
+        let question = view.ask(light, &Unwatched).unwrap();
+        let evaluated = evaluate(&view, &question, &Spec::parse(typed).unwrap(), Effort::CAUSES, &Unwatched);
+        match evaluated {
+            Ok(evaluation) => {
+                let by_precision = evaluation.ledger.causes.get(&Cause::Precision);
+                by_precision.is_some_and(|share| share.pixels + share.merely_differing > MOST_BY_PRECISION)
+            }
+            Err(_) => true,
+        }
+    })
+}
+
+#[test]
+fn sound_shaders_are_explained_and_every_fault_is_noticed() {
+    let scene = scene();
+    let mut gpu = Gpu::open().unwrap();
+    for (file, from, to, typed) in FAULTS {
+        gpu.fault = None;
+        assert!(!is_noticed(&gpu, &scene, typed), "{typed} is not explained");
+        gpu.fault = Some((from, to));
+        assert!(is_noticed(&gpu, &scene, typed), "{file}: {from:?} -> {to:?} goes unnoticed in {typed}");
+    }
+}
+
+#[test]
+fn every_shader_file_has_a_fault_in_its_text() {
+    let modules = shader_modules();
+    let files = modules.iter().flat_map(|(_, files)| files);
+    let there: BTreeSet<_> = files.clone().map(|file| file.path).collect();
+    let broken: BTreeSet<_> = FAULTS.iter().map(|(file, ..)| *file).collect();
+    assert_eq!(broken, there);
+    for (path, from, ..) in FAULTS {
+        assert!(files.clone().any(|file| file.path == *path && file.text.contains(from)), "{path} lacks {from:?}");
+    }
+}
