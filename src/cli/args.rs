@@ -26,16 +26,24 @@ pub(super) enum Command {
         after_help = "Example:\n  gnomon compare out/main/report.json out/mine/report.json --max-new-wrong 0.01%"
     )]
     Compare(CompareArgs),
-    /// Measure every configuration of some grids: results.jsonl as they come, results.csv, fronts, plots
-    #[command(after_help = "Examples:\n  gnomon sweep scenes/room --light spot --out out/sweep \\\n    \
-        --grid 'map:size=256..4096,filter=nearest|pcf-box3' --grid 'volume:count=z-pass|z-fail|mixed'\n  \
+    /// Measure every configuration of some grids: rows, fronts and plots
+    #[command(
+        after_help = "Examples:\n  gnomon sweep scenes/room --light spot --grid 'map:size=256..4096,filter=nearest|pcf-box3' --out out/sweep\n  \
         gnomon sweep scenes/room --grid 'map:size=256..4096' --out out/part-1 --shard 1/3\n\n\
         In a grid a..b doubles from a to b, and | separates values. Called again with the same --out, it goes on where \
-        it ended, however it ended.")]
+        it ended, however it ended."
+    )]
     Sweep(SweepArgs),
     /// Join the results of several sweeps, such as the shards of one
     #[command(after_help = "Example:\n  gnomon merge out/part-1 out/part-2 out/part-3 --out out/whole")]
     Merge(MergeArgs),
+    /// Find the cheapest technique within a budget
+    #[command(after_help = "Examples:\n  gnomon advise scenes/room --light spot --max-wrong 0.1%\n  \
+        gnomon advise scenes/torus --light lamp --max-wrong 0.01% --max-ms 5\n\nExit code 1 if nothing keeps to the budget.")]
+    Advise(AdviseArgs),
+    /// Repeat published experiments, with the error of every answer
+    #[command(after_help = "Example:\n  gnomon bench-published")]
+    BenchPublished(BenchPublishedArgs),
     /// Draw a scene, lit with the shadows of a technique or with the exact ones
     #[command(after_help = "Example:\n  gnomon render scenes/room -t map:size=512 -o room.png")]
     Render(RenderArgs),
@@ -164,6 +172,34 @@ pub(super) struct MergeArgs {
     /// Write the joined results here
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AdviseArgs {
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    /// Largest share of wrong pixels among the asked, e.g. 0.1%
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(super) max_wrong: f64,
+    /// Largest GPU time, milliseconds
+    #[arg(long, value_name = "MS")]
+    pub(super) max_ms: Option<f64>,
+    /// Texel phases over which the share of wrong pixels is the mean
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub(super) phases: u32,
+    /// Only these configurations, as in sweep [default: maps, volumes, and every other technique as it is by default]
+    #[arg(long, value_name = "GRID")]
+    pub(super) grid: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct BenchPublishedArgs {
+    /// Folder with the scenes torus, pipe and polygons-*
+    #[arg(long, value_name = "DIR", default_value = "scenes")]
+    pub(super) folder: PathBuf,
+    /// Picture size in pixels, instead of the scenes'
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(super) size: Option<UVec2>,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,9 @@
 //! The command line: the only place that reads and writes files and talks to the terminal, and the only one that uses
 //! `anyhow`. A command that finds something prints the command for the next step, too.
 
+mod advise;
 mod args;
+mod bench_published;
 mod check;
 mod columns;
 mod command;
@@ -47,6 +49,8 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Sweep(args) => sweep::run(&args, &terminal),
         Command::Merge(args) => sweep::merge(&args),
+        Command::Advise(args) => advise::run(&args, &terminal),
+        Command::BenchPublished(args) => bench_published::run(&args, &terminal),
         Command::Render(args) => render::run(&args, &terminal),
         Command::Truth(args) => masks::truth(&args, &terminal),
         Command::Mask(args) => masks::mask(&args, &terminal),

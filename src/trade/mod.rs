@@ -1,8 +1,10 @@
 //! The trade of accuracy for cost: many configurations measured, the ones nothing beats, and the cheapest that will do.
 
+pub mod advise;
 pub mod front;
 pub mod grid;
 pub mod plot;
+pub mod published;
 pub mod record;
 
 pub use front::{Point, front};

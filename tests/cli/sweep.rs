@@ -79,7 +79,7 @@ fn a_sweep_that_is_killed_twenty_times_ends_as_if_it_never_was() {
         // A crash may also tear the line at hand, which a killed process alone rarely does.
         let file = folder.path().join("killed/results.jsonl");
         if let Ok(bytes) = fs::read(&file)
-            && moment % 3 == 0
+            && moment.is_multiple_of(3)
             && bytes.iter().filter(|byte| **byte == b'\n').count() > 2
         {
             fs::write(&file, &bytes[..bytes.len() - 1 - (moment % 50) as usize]).unwrap();
