@@ -24,6 +24,7 @@ mod pictures;
 mod render;
 mod report;
 mod scaffold;
+mod show;
 mod sweep;
 mod tasks;
 mod terminal;
