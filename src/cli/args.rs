@@ -351,11 +351,6 @@ pub(super) enum Listed {
     Techniques,
 }
 
-fn share(typed: &str) -> Result<f64, String> {
-    let share = typed.parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| format!("'{typed}' is not between 0 and 1"))
-}
-
 fn size(typed: &str) -> Result<UVec2, String> {
     pair(typed, 'x').filter(|size| size.min_element() > 0).ok_or_else(|| format!("'{typed}' is not like 1024x768"))
 }
@@ -364,7 +359,9 @@ fn size(typed: &str) -> Result<UVec2, String> {
 fn share(typed: &str) -> Result<f64, String> {
     let (number, unit) = typed.strip_suffix('%').map_or((typed, 1.0), |number| (number, 0.01));
     let share = number.trim().parse().ok().map(|number: f64| unit * number);
-    share.filter(|share| (0.0..=1.0).contains(share)).ok_or_else(|| format!("'{typed}' is not like 0.1% or 0.001"))
+    share
+        .filter(|share| (0.0..=1.0).contains(share))
+        .ok_or_else(|| format!("'{typed}' is not between 0 and 1, like 0.1% or 0.001"))
 }
 
 fn shard(typed: &str) -> Result<Shard, String> {
