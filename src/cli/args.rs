@@ -62,7 +62,7 @@ pub(super) enum Command {
     /// Tell what a scene requires, which techniques apply, and what to expect of one
     #[command(after_help = "Example:\n  gnomon inspect scenes/room -t map:size=1024")]
     Inspect(InspectArgs),
-    /// Explain one pixel: ray, occluder, every stage of the technique, the cause and the fix
+    /// Explain one pixel: ray, occluder, every stage, the cause and the fix
     #[command(after_help = "Example:\n  gnomon explain scenes/torus -t map:bias=none --light lamp --pixel 512,400")]
     Explain(ExplainArgs),
     /// Find what is wrong with a technique's shadows, and try the fixes

@@ -7,7 +7,6 @@ use super::{is_lost, proceed};
 use crate::cli::command::Subject;
 use crate::cli::context::lights;
 use crate::cli::report;
-use crate::cli::terminal::Terminal;
 use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate};
 use crate::gpu::{Gpu, GpuError};
 use crate::report::model::Run;
@@ -55,7 +54,7 @@ pub(super) struct Session<'a> {
     pub(super) results: &'a mut ResultsFolder,
     pub(super) truths: &'a Path,
     pub(super) limits: RowLimits,
-    pub(super) terminal: &'a Terminal,
+    pub(super) terminal: &'a dyn Watch,
 }
 
 /// How measuring a scene's rows ended.
@@ -177,6 +176,52 @@ impl RowError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::model::Status;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    /// A watch that loses the device when the second row begins.
+    struct Saboteur<'g> {
+        gpu: &'g Gpu,
+        rows: AtomicU32,
+    }
+
+    impl Watch for Saboteur<'_> {
+        fn start(&self, _what: &str, _total: u64) {}
+        fn advance(&self, _units: u64) {
+            if self.rows.fetch_add(1, Ordering::SeqCst) == 1 {
+                self.gpu.device.destroy();
+            }
+        }
+        fn interrupted(&self) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn a_lost_device_costs_one_row() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/triangle");
+        let size = Some(glam::UVec2::new(32, 24));
+        let scene = crate::scene::load(&path, &crate::scene::LoadOptions { size, ..Default::default() }).unwrap();
+        let specs: Vec<Spec> =
+            ["map:size=16", "map:size=32", "map:size=64"].map(|typed| Spec::parse(typed).unwrap()).into();
+        let light = Some(scene.lights[0].name.as_str());
+        let rows = plan(&[(&path, &scene)], light, &specs, Shard { part: 1, of: 1 });
+        let mut pending: Vec<&Row<'_>> = rows.iter().collect();
+        let gpu = Gpu::open().unwrap();
+        let mut results = ResultsFolder::open(folder.path(), &super::super::header(&gpu)).unwrap();
+        let limits = RowLimits { seconds: 1e9, megabytes: None };
+        let saboteur = Saboteur { gpu: &gpu, rows: AtomicU32::new(0) };
+        let mut measure = |gpu: &Gpu, watch: &dyn Watch, pending: &mut Vec<&Row<'_>>| {
+            let mut session = Session { results: &mut results, truths: folder.path(), limits, terminal: watch };
+            session.measure(gpu, &path, &scene, pending).unwrap()
+        };
+        assert_eq!(measure(&gpu, &saboteur, &mut pending), Ended::DeviceLost);
+        assert_eq!(pending.len(), 1);
+        assert_eq!(measure(&Gpu::open().unwrap(), &crate::watch::Unwatched, &mut pending), Ended::AllRows);
+        let statuses: Vec<Status> = results.records().iter().map(|record| record.run.status).collect();
+        assert_eq!(statuses, [Status::Ok, Status::Failed, Status::Ok]);
+    }
 
     #[test]
     fn shards_share_the_rows_without_overlap() {
