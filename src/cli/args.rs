@@ -110,6 +110,9 @@ pub(super) struct CheckArgs {
     /// Shift the light's texel grid N times by sub-texel steps; budgets then bind the mean
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub(super) jitter: u32,
+    /// Who answers for the truth; both: exact, and every ray again by Mitsuba
+    #[arg(long, value_enum, default_value_t = OracleChoice::Exact)]
+    pub(super) oracle: OracleChoice,
     /// Write report.json and pictures here
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
@@ -268,6 +271,9 @@ impl Show {
 pub(super) struct TruthArgs {
     #[command(flatten)]
     pub(super) scene: SceneArgs,
+    /// Who answers; both: exact, with Mitsuba's disagreements told
+    #[arg(long, value_enum, default_value_t = OracleChoice::Exact)]
+    pub(super) oracle: OracleChoice,
     /// Image to write: .png or .exr
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
@@ -343,6 +349,17 @@ pub(super) struct ListArgs {
     /// Folder to look for scenes in
     #[arg(long, value_name = "DIR", default_value = "scenes")]
     pub(super) folder: PathBuf,
+}
+
+/// Who answers for the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum OracleChoice {
+    /// The exact ray core
+    Exact,
+    /// Mitsuba 3; where the exact ray core says otherwise, nobody
+    Mitsuba,
+    /// The exact ray core, and Mitsuba beside it
+    Both,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]

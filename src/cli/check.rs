@@ -2,7 +2,7 @@
 
 use super::args::CheckArgs;
 use super::command::Subject;
-use super::context::{load, open_gpu};
+use super::context::{ask, load, mitsuba_for, open_gpu};
 use super::imagery::Collector;
 use super::output::OutFolder;
 use super::tasks::{Task, tasks};
@@ -30,6 +30,8 @@ struct Session<'a> {
     pixels: Collector,
     /// For every run, the command that looks deeper into it.
     deeper: Vec<String>,
+    /// What else was found, in words.
+    notes: Vec<String>,
 }
 
 pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
@@ -43,7 +45,8 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
         scenes.iter().map(|(path, scene)| tasks(path, scene, &specs, args)).collect::<anyhow::Result<_>>()?;
     let gpu = open_gpu()?;
     let pixels = Collector::new(exporters.iter().any(|exporter| exporter.shows_pixels));
-    let mut session = Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), pixels, deeper: Vec::new() };
+    let (runs, deeper, notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut session = Session { args, gpu: &gpu, terminal, out, runs, pixels, deeper, notes };
     let ended = scenes.iter().zip(&tasks).try_for_each(|((path, scene), tasks)| {
         session.check_scene(path, scene, tasks).with_context(|| format!("scene '{}'", scene.name))
     });
@@ -61,8 +64,11 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
 impl Session<'_> {
     fn check_scene(&mut self, path: &Path, scene: &Scene, tasks: &[Task<'_>]) -> anyhow::Result<()> {
         let view = View::new(self.gpu, scene)?;
+        let mut mitsuba = mitsuba_for(self.args.oracle, &view)?;
         for of_light in tasks.chunk_by(|a, b| a.light.name == b.light.name) {
-            let question = view.ask(of_light[0].light, self.terminal)?;
+            let (light, oracle) = (of_light[0].light, self.args.oracle);
+            let question = ask(&view, light, oracle, mitsuba.as_mut(), self.terminal)?;
+            self.notes.extend(report::mitsuba_line(&question).map(|line| format!("{} / {line}", scene.name)));
             self.pixels.ask(&view, &question)?;
             for task in of_light {
                 let subject =
@@ -135,6 +141,9 @@ impl Session<'_> {
             .as_ref()
             .map_or_else(|| Ok(Vec::new()), |out| write(&report, self.pixels.imagery(), exporters, out));
         let mut text = table(&report, width());
+        for note in &self.notes {
+            text += &format!("\n{note}");
+        }
         for path in written.iter().flatten() {
             text += &format!("\nwrote {}", path.display());
         }

@@ -15,7 +15,7 @@ pub use cost::time_in_turn;
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
 pub use occluders::occluders;
-pub use view::{Question, TruthStore, View};
+pub use view::{Oracle, Question, TruthStore, View};
 
 use crate::cause::Replay;
 use crate::mask::{Mask, Truth, TruthMask};

@@ -3,9 +3,11 @@
 use crate::cast::Casters;
 use crate::gpu::{GBuffer, Geometry, Gpu, GpuError};
 use crate::inspect::{Adjacency, neighbours};
+use crate::mask::Truth;
 use crate::receiver::{PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::technique::Job;
+use crate::truth::mitsuba::MitsubaCheck;
 use crate::truth::{self, Disagreement, ExactTruth, TruthKey};
 use crate::watch::{Interrupted, Watch};
 
@@ -37,6 +39,33 @@ pub struct Question<'s> {
     pub truth: ExactTruth,
     /// Sampled pixels on which brute force disagrees with it: none, or a bug.
     pub brute_disagreements: Vec<Disagreement>,
+    /// What Mitsuba says, if it was asked.
+    pub mitsuba: Option<MitsubaCheck>,
+    /// Whose answers `truth` holds.
+    pub oracle: Oracle,
+}
+
+/// Who answers for the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Oracle {
+    /// The exact ray core.
+    Exact,
+    /// Mitsuba, where the exact ray core says the same.
+    Mitsuba,
+}
+
+impl Question<'_> {
+    /// With Mitsuba's answers in place of the exact ones. Where the two differ the pixel becomes undecided: replays
+    /// start from the exact answer.
+    #[must_use]
+    pub fn answered_by(mut self, check: MitsubaCheck) -> Self {
+        for (exact, theirs) in self.truth.mask.pixels.iter_mut().zip(&check.mask.pixels) {
+            if exact.is_some() && exact != theirs {
+                *exact = Some(Truth::Undecided);
+            }
+        }
+        Self { mitsuba: Some(check), oracle: Oracle::Mitsuba, ..self }
+    }
 }
 
 /// Keeps truths between calls of gnomon, as bytes by key.
@@ -83,7 +112,7 @@ impl<'s> View<'s> {
         let samples = CROSS_CHECKED.min(affordable as u32);
         let brute_disagreements =
             truth::cross_check(self.scene, light, &self.receivers, &classes, watch, &truth.mask, samples)?;
-        Ok(Question { light, classes, truth, brute_disagreements })
+        Ok(Question { light, classes, truth, brute_disagreements, mitsuba: None, oracle: Oracle::Exact })
     }
 
     /// The same, taken from what earlier calls kept, if it is there and whole; else worked out and kept.
@@ -101,7 +130,15 @@ impl<'s> View<'s> {
             Some(Ok(truth)) => {
                 let classes = self.receivers.classify(self.scene, light);
                 // Only what brute force agreed with was kept.
-                return Ok(Question { light, classes, truth, brute_disagreements: Vec::new() });
+                let brute_disagreements = Vec::new();
+                return Ok(Question {
+                    light,
+                    classes,
+                    truth,
+                    brute_disagreements,
+                    mitsuba: None,
+                    oracle: Oracle::Exact,
+                });
             }
             Some(Err(error)) => store.refuse(&key, &error.to_string()),
             None => {}

@@ -2,6 +2,7 @@
 
 use crate::verdict::{CauseShare, Verdict};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What one cause is answerable for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,65 @@ pub struct TruthSource {
     pub ms: f64,
     /// Pixels on which other oracles disagree with it.
     pub disagreements: Disagreements,
+    /// What Mitsuba said, ray by ray where it differs; null if it was not asked.
+    pub mitsuba: Option<MitsubaFigures>,
+}
+
+/// What came of asking Mitsuba.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MitsubaFigures {
+    /// Version and variant.
+    pub version: String,
+    /// Shadow rays that it answered.
+    pub rays: u64,
+    /// Rays on which it disagrees with the exact truth.
+    pub disagreements: u64,
+    /// Rays whose first surface lies too close to the receiver for f32 to tell; it calls them lit.
+    pub contacts: u64,
+    /// Wall-clock time, milliseconds.
+    pub ms: f64,
+    /// Every disagreement and every contact.
+    pub listed: Vec<RayRow>,
+    /// The test of an area light's counted shares against an independent estimate; null for other lights.
+    pub estimate: Option<EstimateFigures>,
+}
+
+/// A test of counted shares of an area light against an estimate by other points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimateFigures {
+    /// Points drawn for each pixel.
+    pub draws: u32,
+    /// The chance of any false rejection.
+    pub alpha: f64,
+    /// What the counted points are granted.
+    pub discrepancy: f64,
+    /// Pixels whose share and estimate can both be right.
+    pub accepted: u64,
+    /// Pixels at which they cannot, as column and row.
+    pub rejected: Vec<[u32; 2]>,
+}
+
+/// A ray on which two oracles disagree, or that one of them cannot decide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RayRow {
+    /// Column and row.
+    pub pixel: [u32; 2],
+    /// Which point of the light.
+    pub point: u32,
+    /// The receiver, rebased world, metres.
+    pub from: [f64; 3],
+    /// The light.
+    pub to: [f64; 3],
+    /// What the exact truth says: blocked or not.
+    pub blocked: bool,
+    /// What Mitsuba says: blocked, lit or contact.
+    pub mitsuba: Cow<'static, str>,
+    /// Whether exact arithmetic on every triangle says so, too.
+    pub confirmed: bool,
+    /// Why they differ.
+    pub reason: Cow<'static, str>,
+    /// How far the ray would have to move for the other verdict to be right, metres.
+    pub distance_m: f64,
 }
 
 /// Pixels on which other oracles disagree; `None` for one that was not asked.

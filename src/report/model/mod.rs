@@ -9,7 +9,9 @@ mod run;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use figures::{BudgetOutcome, CauseEntry, Disagreements, Jitter, Spread, TruthSource};
+pub use figures::{
+    BudgetOutcome, CauseEntry, Disagreements, EstimateFigures, Jitter, MitsubaFigures, RayRow, Spread, TruthSource,
+};
 pub use run::{Question, Run, Status};
 
 use serde::{Deserialize, Serialize};

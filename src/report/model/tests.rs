@@ -54,6 +54,7 @@ pub(crate) fn full_run(scene: &str) -> Run {
         rays: 7,
         ms: 0.3,
         disagreements: Disagreements { mitsuba: None, brute: Some(0) },
+        mitsuba: None,
     });
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
