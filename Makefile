@@ -6,7 +6,7 @@ DEMO = out/demo
 # Vulkan loaders complain on standard error without one.
 export XDG_RUNTIME_DIR ?= $(CURDIR)/out/xdg
 
-.PHONY: help setup demo test bench docs pictures clean
+.PHONY: help setup oracle demo test bench docs pictures clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
@@ -16,7 +16,10 @@ setup: ## a Vulkan driver and the two large meshes, where missing
 	setup/vulkan.sh
 	setup/meshes.sh
 
-demo: setup ## judge three scenes' shadows; report and pictures go to out/demo
+oracle: ## Mitsuba, the second oracle, in oracle/.venv
+	setup/oracle.sh
+
+demo: setup oracle ## judge three scenes' shadows; report and pictures go to out/demo
 	@echo '==> building gnomon'
 	$(CARGO) build --release --locked
 	@echo '==> judging shadows (a budget exceeded, exit status 1, is a result)'
@@ -28,7 +31,7 @@ demo: setup ## judge three scenes' shadows; report and pictures go to out/demo
 	@ls $(DEMO)/*.png
 	@echo '==> report: $(DEMO)/report.json'
 
-test: setup ## format, lints, documentation and every test
+test: setup oracle ## format, lints, documentation and every test
 	setup/rust.sh
 	@echo '==> format'
 	$(CARGO) fmt --check
@@ -36,6 +39,9 @@ test: setup ## format, lints, documentation and every test
 	$(CARGO) clippy --all-targets --locked -- -D warnings
 	@echo '==> documentation'
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --document-private-items --locked
+	@echo '==> oracle'
+	cd oracle && .venv/bin/ruff format --check . && .venv/bin/ruff check . && .venv/bin/mypy gnomon_oracle tests
+	cd oracle && .venv/bin/python -m pytest
 	@echo '==> tests'
 	mkdir -p out
 	set -o pipefail; $(CARGO) test --locked | tee out/test.log

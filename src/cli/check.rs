@@ -2,15 +2,15 @@
 
 use super::args::CheckArgs;
 use super::command::Subject;
-use super::context::{load, open_gpu};
+use super::context::{ask, load, mitsuba_for, open_gpu};
 use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
 use super::{exit, pictures, report};
-use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, jittered};
+use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, flips, jittered};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
-use crate::report::model::{Jitter, Report, Run, Status};
+use crate::report::model::{Jitter, Motion, Report, Run, Status};
 use crate::report::table::table;
 use crate::scene::Scene;
 use crate::suggest::hint;
@@ -27,6 +27,8 @@ struct Session<'a> {
     runs: Vec<Run>,
     /// For every run, the command that looks deeper into it.
     deeper: Vec<String>,
+    /// What else was found, in words.
+    notes: Vec<String>,
 }
 
 pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
@@ -39,7 +41,8 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let tasks: Vec<Vec<Task<'_>>> =
         scenes.iter().map(|(path, scene)| tasks(path, scene, &specs, args)).collect::<anyhow::Result<_>>()?;
     let gpu = open_gpu()?;
-    let mut session = Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new() };
+    let mut session =
+        Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new(), notes: Vec::new() };
     let ended = scenes.iter().zip(&tasks).try_for_each(|((path, scene), tasks)| {
         session.check_scene(path, scene, tasks).with_context(|| format!("scene '{}'", scene.name))
     });
@@ -57,12 +60,15 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
 impl Session<'_> {
     fn check_scene(&mut self, path: &Path, scene: &Scene, tasks: &[Task<'_>]) -> anyhow::Result<()> {
         let view = View::new(self.gpu, scene)?;
+        let mut mitsuba = mitsuba_for(self.args.oracle, &view)?;
         for of_light in tasks.chunk_by(|a, b| a.light.name == b.light.name) {
-            let question = view.ask(of_light[0].light, self.terminal)?;
+            let (light, oracle) = (of_light[0].light, self.args.oracle);
+            let question = ask(&view, light, oracle, mitsuba.as_mut(), self.terminal)?;
+            self.notes.extend(report::mitsuba_line(&question).map(|line| format!("{} / {line}", scene.name)));
             for task in of_light {
                 let subject =
                     Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
-                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter))?;
+                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter, self.args.motion))?;
                 self.runs.push(run);
                 self.deeper.push(subject.diagnose());
             }
@@ -80,9 +86,11 @@ impl Session<'_> {
     ) -> anyhow::Result<Run> {
         let asked = report::question(view.scene, task.light, &task.spec, command);
         let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
-            Ok((evaluation, jittered(view, question, &task.spec, self.args.jitter, self.terminal)?))
+            let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
+            let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;
+            Ok((evaluation, phases, moved))
         });
-        let (evaluation, phases) = match outcome {
+        let (evaluation, phases, moved) = match outcome {
             Ok(outcome) => outcome,
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
                 return Ok(Run::unsupported(asked, why.to_string()));
@@ -97,6 +105,7 @@ impl Session<'_> {
         run.cost = Some(evaluation.cost.clone());
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(&fractions);
+        run.motion = Motion::of(&moved.of_camera, &moved.of_light);
         run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
         if let Some(out) = &self.out {
             pictures::write_run(out, self.runs.len(), view, question, &run, &evaluation)?;
@@ -122,6 +131,9 @@ impl Session<'_> {
         let report = Report::new(report::adapter(self.gpu), std::mem::take(&mut self.runs));
         let written = self.out.as_ref().map_or_else(|| Ok(Vec::new()), |out| write(&report, exporters, out));
         let mut text = table(&report, width());
+        for note in &self.notes {
+            text += &format!("\n{note}");
+        }
         for path in written.iter().flatten() {
             text += &format!("\nwrote {}", path.display());
         }

@@ -1,13 +1,14 @@
 //! What most commands begin with: the scene, the lights asked about, the device.
 
-use super::args::SceneArgs;
-use super::terminal::complain;
-use crate::evaluate::View;
+use super::args::{OracleChoice, SceneArgs};
+use super::terminal::{Terminal, complain};
+use crate::evaluate::{Question, View};
 use crate::gpu::Gpu;
 use crate::receiver::PixelClass;
 use crate::scene::{self, Light, LoadOptions, Scene};
 use crate::suggest::hint;
 use crate::technique::{Prepared, Spec};
+use crate::truth::mitsuba::{Mitsuba, MitsubaCheck};
 use anyhow::{Context, bail};
 use glam::UVec2;
 use std::path::Path;
@@ -37,6 +38,38 @@ pub(super) fn lights<'s>(scene: &'s Scene, name: Option<&str>) -> anyhow::Result
             bail!("scene '{}' has no light '{name}'{hint}; it has {}", scene.name, names.join(", "))
         }
     }
+}
+
+/// Mitsuba with the scene's casters, if the choice needs it.
+pub(super) fn mitsuba_for(choice: OracleChoice, view: &View<'_>) -> anyhow::Result<Option<Mitsuba>> {
+    let wanted = choice != OracleChoice::Exact;
+    Ok(wanted.then(|| Mitsuba::new(view.scene, &view.casters)).transpose()?)
+}
+
+/// The question about one light, answered by the oracles chosen.
+pub(super) fn ask<'s>(
+    view: &View<'s>,
+    light: &'s Light,
+    choice: OracleChoice,
+    mitsuba: Option<&mut Mitsuba>,
+    terminal: &Terminal,
+) -> anyhow::Result<Question<'s>> {
+    let mut question = view.ask(light, terminal)?;
+    let Some(mitsuba) = mitsuba else { return Ok(question) };
+    let asked = mitsuba.check(view.scene, &view.casters, light, &view.receivers, &question.classes, terminal).and_then(
+        |check| {
+            let estimate = mitsuba.estimate(&view.casters, light, &view.receivers, &question.truth.mask)?;
+            Ok(MitsubaCheck { estimate, ..check })
+        },
+    );
+    // Ctrl-C ends Mitsuba as well, which then gives no answer.
+    terminal.proceed()?;
+    let check = asked?;
+    if choice == OracleChoice::Mitsuba {
+        return Ok(question.answered_by(check));
+    }
+    question.mitsuba = Some(check);
+    Ok(question)
 }
 
 /// A technique for a command that cannot go on without it.

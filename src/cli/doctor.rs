@@ -3,6 +3,7 @@
 use super::exit;
 use super::terminal::say;
 use crate::gpu::{Gpu, describe_adapters};
+use crate::truth::mitsuba::Mitsuba;
 
 pub(super) fn run() -> anyhow::Result<u8> {
     say(&format!("gnomon {} ({} {})", env!("CARGO_PKG_VERSION"), std::env::consts::OS, std::env::consts::ARCH));
@@ -24,5 +25,8 @@ pub(super) fn run() -> anyhow::Result<u8> {
     say(&format!("largest buffer     {} MiB", limits.buffer_bytes >> 20));
     say("oracle exact       available (built in, f64 with exact predicates)");
     say("oracle brute       available (built in, cross-checks a sample of every truth)");
+    let mitsuba =
+        if Mitsuba::is_installed() { "available (--oracle both)" } else { "not installed: run `make oracle`" };
+    say(&format!("oracle mitsuba     {mitsuba}"));
     Ok(exit::OK)
 }

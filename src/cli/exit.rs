@@ -3,6 +3,7 @@
 use crate::evaluate::EvaluateError;
 use crate::gpu::GpuError;
 use crate::technique::TechniqueError;
+use crate::truth::mitsuba::MitsubaError;
 use crate::watch::Interrupted;
 use std::process::ExitCode;
 
@@ -64,6 +65,11 @@ pub(super) fn code_of(error: &anyhow::Error) -> u8 {
         TechniqueError::NoAnswer { .. } => FAILED,
         TechniqueError::Interrupted(_) => INTERRUPTED,
     };
+    let mitsuba = |error: &MitsubaError| match error {
+        MitsubaError::Missing => NO_ADAPTER,
+        MitsubaError::Interrupted(_) => INTERRUPTED,
+        MitsubaError::Io(_) | MitsubaError::Answer(_) | MitsubaError::Void { .. } => FAILED,
+    };
     for cause in error.chain() {
         if cause.is::<Interrupted>() {
             return INTERRUPTED;
@@ -73,6 +79,9 @@ pub(super) fn code_of(error: &anyhow::Error) -> u8 {
         }
         if let Some(error) = cause.downcast_ref::<TechniqueError>() {
             return technique(error);
+        }
+        if let Some(error) = cause.downcast_ref::<MitsubaError>() {
+            return mitsuba(error);
         }
         match cause.downcast_ref::<EvaluateError>() {
             Some(EvaluateError::Technique(error)) => return technique(error),

@@ -1,10 +1,10 @@
 //! `gnomon truth` and `gnomon mask`: one light's visibility as an image that other programs can read.
 
-use super::args::{MaskArgs, TruthArgs};
-use super::context::{load, only_light, open_gpu, prepare};
-use super::exit;
+use super::args::{MaskArgs, OracleChoice, TruthArgs};
+use super::context::{ask, load, mitsuba_for, only_light, open_gpu, prepare};
 use super::output::{ImageFormat, OutFile};
 use super::terminal::{Terminal, say};
+use super::{exit, report};
 use crate::evaluate::View;
 use crate::report::mask_image::{MaskImage, MaskImageError};
 use crate::technique::Spec;
@@ -15,8 +15,14 @@ pub(super) fn truth(args: &TruthArgs, terminal: &Terminal) -> anyhow::Result<u8>
     let out = OutFile::open(&args.output)?;
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
-    let truth = view.ask(light, terminal)?.truth.mask;
-    out.write(&encoded(&MaskImage::from(&truth), out.format)?)?;
+    let mut mitsuba = mitsuba_for(args.oracle, &view)?;
+    let question = ask(&view, light, args.oracle, mitsuba.as_mut(), terminal)?;
+    let truth = match &question.mitsuba {
+        Some(check) if args.oracle == OracleChoice::Mitsuba => &check.mask,
+        _ => &question.truth.mask,
+    };
+    out.write(&encoded(&MaskImage::from(truth), out.format)?)?;
+    report::mitsuba_line(&question).iter().for_each(|line| say(line));
     say(&format!("wrote {}", args.output.display()));
     Ok(exit::OK)
 }

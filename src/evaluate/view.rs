@@ -3,9 +3,11 @@
 use crate::cast::Casters;
 use crate::gpu::{GBuffer, Geometry, Gpu, GpuError};
 use crate::inspect::{Adjacency, neighbours};
+use crate::mask::Truth;
 use crate::receiver::{PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::technique::Job;
+use crate::truth::mitsuba::MitsubaCheck;
 use crate::truth::{self, Disagreement, ExactTruth};
 use crate::watch::{Interrupted, Watch};
 
@@ -37,6 +39,33 @@ pub struct Question<'s> {
     pub truth: ExactTruth,
     /// Sampled pixels on which brute force disagrees with it: none, or a bug.
     pub brute_disagreements: Vec<Disagreement>,
+    /// What Mitsuba says, if it was asked.
+    pub mitsuba: Option<MitsubaCheck>,
+    /// Whose answers `truth` holds.
+    pub oracle: Oracle,
+}
+
+/// Who answers for the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Oracle {
+    /// The exact ray core.
+    Exact,
+    /// Mitsuba, where the exact ray core says the same.
+    Mitsuba,
+}
+
+impl Question<'_> {
+    /// With Mitsuba's answers in place of the exact ones. Where the two differ the pixel becomes undecided: replays
+    /// start from the exact answer.
+    #[must_use]
+    pub fn answered_by(mut self, check: MitsubaCheck) -> Self {
+        for (exact, theirs) in self.truth.mask.pixels.iter_mut().zip(&check.mask.pixels) {
+            if exact.is_some() && exact != theirs {
+                *exact = Some(Truth::Undecided);
+            }
+        }
+        Self { mitsuba: Some(check), oracle: Oracle::Mitsuba, ..self }
+    }
 }
 
 /// Asked pixels that brute force decides again for each question.
@@ -73,7 +102,7 @@ impl<'s> View<'s> {
         let samples = CROSS_CHECKED.min(affordable as u32);
         let brute_disagreements =
             truth::cross_check(self.scene, light, &self.receivers, &classes, watch, &truth.mask, samples)?;
-        Ok(Question { light, classes, truth, brute_disagreements })
+        Ok(Question { light, classes, truth, brute_disagreements, mitsuba: None, oracle: Oracle::Exact })
     }
 
     /// What a technique is asked about a light, given the class of every pixel.

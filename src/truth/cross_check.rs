@@ -76,7 +76,7 @@ fn by_brute_force(scene: &Scene, light: &Light, emitter: &Emitter, receiver: &Re
 
 /// Up to `samples` different indices below `count`, ascending: one in each of as many equal parts, at a place that the
 /// golden ratio picks, so that no regular pattern of the picture can hide between them.
-fn spread(count: usize, samples: usize) -> Vec<usize> {
+pub(super) fn spread(count: usize, samples: usize) -> Vec<usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let samples = samples.min(count);
     let part = |i: usize| i * count / samples;

@@ -1,11 +1,13 @@
 //! The truth: what fraction of a light every asked pixel really sees, worked out by exact ray casting.
 //!
-//! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again.
+//! [`exact()`] asks the ray core; [`cross_check()`] has the brute-force twin decide some of the pixels again;
+//! [`mitsuba`] asks another program about every ray.
 
 #[cfg(test)]
 mod area_tests;
 mod cross_check;
 mod exact;
+pub mod mitsuba;
 #[cfg(test)]
 mod tests;
 

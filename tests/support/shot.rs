@@ -47,13 +47,16 @@ impl<'s> Shot<'s> {
     /// The specification; a lamp with receivers all around gets a frustum that cuts some of them off.
     pub(crate) fn supported(&self, typed: &str) -> Spec {
         let (spec, default) = (parsed(typed), parsed("map"));
-        if spec.technique().id() != default.technique().id() {
-            return spec;
-        }
         match default.technique().supports(&default, self.view.scene, self.question.light, &GPU) {
             Ok(()) => spec,
-            Err(_) => spec.with("fov_deg", "120").expect("a legal angle"),
+            Err(_) if spec.technique().id() == "map" => spec.with("fov_deg", "120").expect("a legal angle"),
+            Err(_) => spec,
         }
+    }
+
+    /// Whether a technique answers for this light at all.
+    pub(crate) fn supports(&self, spec: &Spec) -> bool {
+        spec.technique().supports(spec, self.view.scene, self.question.light, &GPU).is_ok()
     }
 
     /// The pixels that are asked and decided.

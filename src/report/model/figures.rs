@@ -29,6 +29,65 @@ pub struct TruthSource {
     pub ms: f64,
     /// Pixels on which other oracles disagree with it.
     pub disagreements: Disagreements,
+    /// What Mitsuba said, ray by ray where it differs; null if it was not asked.
+    pub mitsuba: Option<MitsubaFigures>,
+}
+
+/// What came of asking Mitsuba.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MitsubaFigures {
+    /// Version and variant.
+    pub version: String,
+    /// Shadow rays that it answered.
+    pub rays: u64,
+    /// Rays on which it disagrees with the exact truth.
+    pub disagreements: u64,
+    /// Rays whose first surface lies too close to the receiver for f32 to tell; it calls them lit.
+    pub contacts: u64,
+    /// Wall-clock time, milliseconds.
+    pub ms: f64,
+    /// Every disagreement and every contact.
+    pub listed: Vec<RayRow>,
+    /// The test of an area light's counted shares against an independent estimate; null for other lights.
+    pub estimate: Option<EstimateFigures>,
+}
+
+/// A test of counted shares of an area light against an estimate by other points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EstimateFigures {
+    /// Points drawn for each pixel.
+    pub draws: u32,
+    /// The chance of any false rejection.
+    pub alpha: f64,
+    /// What the counted points are granted.
+    pub discrepancy: f64,
+    /// Pixels whose share and estimate can both be right.
+    pub accepted: u64,
+    /// Pixels at which they cannot, as column and row.
+    pub rejected: Vec<[u32; 2]>,
+}
+
+/// A ray on which two oracles disagree, or that one of them cannot decide.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RayRow {
+    /// Column and row.
+    pub pixel: [u32; 2],
+    /// Which point of the light.
+    pub point: u32,
+    /// The receiver, rebased world, metres.
+    pub from: [f64; 3],
+    /// The light.
+    pub to: [f64; 3],
+    /// What the exact truth says: blocked or not.
+    pub blocked: bool,
+    /// What Mitsuba says: blocked, lit or contact.
+    pub mitsuba: &'static str,
+    /// Whether exact arithmetic on every triangle says so, too.
+    pub confirmed: bool,
+    /// Why they differ.
+    pub reason: &'static str,
+    /// How far the ray would have to move for the other verdict to be right, metres.
+    pub distance_m: f64,
 }
 
 /// Pixels on which other oracles disagree; `None` for one that was not asked.
@@ -97,16 +156,43 @@ impl Jitter {
     /// The spread of the share of wrong pixels, one sample per phase; `None` without samples.
     #[must_use]
     pub fn of(wrong_fractions: &[f64]) -> Option<Self> {
-        let n = wrong_fractions.len() as f64;
-        let mean = wrong_fractions.iter().sum::<f64>() / n;
-        let variance = wrong_fractions.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
-        let spread = Spread {
+        Some(Self { phases: wrong_fractions.len() as u32, wrong_fraction: Spread::of(wrong_fractions)? })
+    }
+}
+
+impl Spread {
+    /// Of some samples; `None` without any.
+    #[must_use]
+    pub fn of(samples: &[f64]) -> Option<Self> {
+        let n = samples.len() as f64;
+        let mean = samples.iter().sum::<f64>() / n;
+        let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+        Some(Self {
             mean,
-            min: wrong_fractions.iter().copied().reduce(f64::min)?,
-            max: wrong_fractions.iter().copied().reduce(f64::max)?,
+            min: samples.iter().copied().reduce(f64::min)?,
+            max: samples.iter().copied().reduce(f64::max)?,
             stddev: variance.sqrt(),
-        };
-        Some(Self { phases: wrong_fractions.len() as u32, wrong_fraction: spread })
+        })
+    }
+}
+
+/// Shimmering: pixels that flip from one frame to the next although the truth does not, or the other way round.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Motion {
+    /// How many steps were taken of each kind.
+    pub steps: u32,
+    /// Flips per step while the camera moves sideways.
+    pub camera_flips: Spread,
+    /// Flips per step while the light turns about the scene.
+    pub light_flips: Spread,
+}
+
+impl Motion {
+    /// The flips of each step; `None` without steps.
+    #[must_use]
+    pub fn of(camera: &[u64], light: &[u64]) -> Option<Self> {
+        let spread = |counts: &[u64]| Spread::of(&counts.iter().map(|count| *count as f64).collect::<Vec<f64>>());
+        Some(Self { steps: camera.len() as u32, camera_flips: spread(camera)?, light_flips: spread(light)? })
     }
 }
 

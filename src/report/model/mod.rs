@@ -9,7 +9,10 @@ mod run;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use figures::{BudgetOutcome, CauseEntry, Disagreements, Jitter, Spread, TruthSource};
+pub use figures::{
+    BudgetOutcome, CauseEntry, Disagreements, EstimateFigures, Jitter, MitsubaFigures, Motion, RayRow, Spread,
+    TruthSource,
+};
 pub use run::{Question, Run, Status};
 
 use serde::Serialize;

@@ -53,9 +53,11 @@ pub(crate) fn full_run(scene: &str) -> Run {
         rays: 7,
         ms: 0.3,
         disagreements: Disagreements { mitsuba: None, brute: Some(0) },
+        mitsuba: None,
     });
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
+    run.motion = Motion::of(&[1, 3], &[0, 2]);
     run
 }
 

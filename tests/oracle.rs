@@ -1,0 +1,158 @@
+//! The exact truth against Mitsuba, which nobody here wrote: every shadow ray of every shipped scene, at every scale;
+//! area lights point by point and against an independent estimate. `make oracle` installs it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
+
+mod support;
+
+use glam::{DVec3, UVec2, Vec3};
+use gnomon::cast::Casters;
+use gnomon::evaluate::{Question, View};
+use gnomon::gpu::Gpu;
+use gnomon::mask::TruthMask;
+use gnomon::scene::{Emitter, Light, LightKind, LoadOptions, Placement, Scene, load};
+use gnomon::truth::mitsuba::{Mitsuba, MitsubaCheck, MitsubaError, Reason};
+use gnomon::watch::Unwatched;
+use std::path::Path;
+use support::scenes::shipped;
+use support::shot::shipped_scenes;
+
+/// One ray in a million.
+const RAYS_PER_DISAGREEMENT: u64 = 1_000_000;
+/// Contacts are as long as edges between surfaces in the picture; of a thousand rays one lies in one.
+const RAYS_PER_CONTACT: u64 = 1000;
+
+fn mitsuba(view: &View<'_>) -> Mitsuba {
+    Mitsuba::new(view.scene, &view.casters).expect("`make oracle` installs Mitsuba")
+}
+
+fn check(mitsuba: &mut Mitsuba, view: &View<'_>, light: &Light) -> MitsubaCheck {
+    let classes = view.receivers.classify(view.scene, light);
+    mitsuba.check(view.scene, &view.casters, light, &view.receivers, &classes, &Unwatched).unwrap()
+}
+
+/// At most one ray in a million differs; each lies within f32 error of an edge, and exact arithmetic confirms the truth.
+fn assert_agrees(what: &str, check: &MitsubaCheck) {
+    let disagreements: Vec<_> = check.disagreements().collect();
+    println!("{what}: {} of {} rays, {} contacts", disagreements.len(), check.rays, check.contacts());
+    assert!(disagreements.len() as u64 <= check.rays.div_ceil(RAYS_PER_DISAGREEMENT), "{what}: {disagreements:?}");
+    assert!(disagreements.iter().all(|ray| matches!(ray.reason, Reason::Edge { .. })), "{what}: {disagreements:?}");
+    assert!(disagreements.iter().all(|ray| ray.confirmed), "{what}: {disagreements:?}");
+    assert!(check.contacts() as u64 <= check.rays.div_ceil(RAYS_PER_CONTACT), "{what}: {} contacts", check.contacts());
+}
+
+#[test]
+fn every_ray_of_every_shipped_scene_is_answered_alike() {
+    let gpu = Gpu::open().unwrap();
+    let (mut lights, mut rays) = (0, 0);
+    for scene in shipped_scenes(UVec2::splat(1024)) {
+        let view = View::new(&gpu, &scene).unwrap();
+        let mut mitsuba = mitsuba(&view);
+        for light in scene.lights.iter().filter(|light| !light.is_area()) {
+            let check = check(&mut mitsuba, &view, light);
+            assert_agrees(&format!("{} / {}", scene.name, light.name), &check);
+            (lights, rays) = (lights + 1, rays + check.rays);
+        }
+    }
+    println!("{rays} rays of {lights} lights");
+    assert!(lights >= 14 && rays > 5_000_000, "{rays} rays of {lights} lights");
+}
+
+#[test]
+fn area_lights_are_answered_alike_point_by_point_and_by_an_independent_estimate() {
+    let gpu = Gpu::open().unwrap();
+    let scene = shipped("area", [256, 192]);
+    let view = View::new(&gpu, &scene).unwrap();
+    let mut mitsuba = mitsuba(&view);
+    for light in &scene.lights {
+        let what = format!("area / {}", light.name);
+        let question = view.ask(light, &Unwatched).unwrap();
+        let check = check(&mut mitsuba, &view, light);
+        assert_agrees(&what, &check);
+        let settled = check.listed.iter().map(|ray| ray.pixel).collect::<Vec<_>>();
+        let differing = differing(&question.truth.mask, &check.mask);
+        assert!(differing.iter().all(|pixel| settled.contains(pixel)), "{what}: counts differ where no ray does");
+        let mut rejected = |light: &Light| {
+            let truth = &question.truth.mask;
+            mitsuba.estimate(&view.casters, light, &view.receivers, truth).unwrap().expect("an area light").rejected
+        };
+        assert_eq!(rejected(light), [0_u32; 0], "{what}");
+        let of_moved = rejected(&moved(light, 0.3)).len();
+        assert!(of_moved > 10, "{what}: a light moved by 30 cm is rejected at {of_moved} pixels only");
+    }
+}
+
+/// Pixels that two masks answer differently.
+fn differing(a: &TruthMask, b: &TruthMask) -> Vec<u32> {
+    (0..).zip(a.pixels.iter().zip(&b.pixels)).filter(|(_, (a, b))| a != b).map(|(pixel, _)| pixel).collect()
+}
+
+/// The light, moved along x.
+fn moved(light: &Light, step_m: f32) -> Light {
+    let mut moved = light.clone();
+    match &mut moved.kind {
+        LightKind::Point { position, .. }
+        | LightKind::Spot { position, .. }
+        | LightKind::Rectangle { position, .. }
+        | LightKind::Sphere { position, .. } => *position += Vec3::X * step_m,
+        LightKind::Directional { towards_light } => *towards_light = (*towards_light + Vec3::X * step_m).normalize(),
+    }
+    moved
+}
+
+#[test]
+fn scale_and_place_change_no_answer() {
+    let gpu = Gpu::open().unwrap();
+    let placements = [1e-6, 1e-3, 1.0, 1e3, 1e6].map(|scale| Placement { scale, translate: DVec3::ZERO });
+    let far = Placement { scale: 1.0, translate: DVec3::new(1e6, -1e6, 1e6) };
+    for placement in placements.into_iter().chain([far]) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/triangle");
+        let scene = load(&folder, &LoadOptions { size: Some(UVec2::new(512, 384)), placement }).unwrap();
+        let view = View::new(&gpu, &scene).unwrap();
+        let mut mitsuba = mitsuba(&view);
+        for light in &scene.lights {
+            assert_agrees(&format!("{placement:?} / {}", light.name), &check(&mut mitsuba, &view, light));
+        }
+    }
+}
+
+fn question<'s>(view: &View<'s>, light: &str) -> Question<'s> {
+    view.ask(view.scene.light(light).unwrap(), &Unwatched).unwrap()
+}
+
+#[test]
+fn a_light_moved_by_a_centimetre_and_points_in_another_order_are_noticed() {
+    let gpu = Gpu::open().unwrap();
+    let scene = shipped("triangle", [512, 384]);
+    let view = View::new(&gpu, &scene).unwrap();
+    let question = question(&view, "lamp");
+    let of_moved = check(&mut mitsuba(&view), &view, &moved(question.light, 0.01));
+    let differing_pixels = differing(&question.truth.mask, &of_moved.mask).len();
+    assert!(differing_pixels > 100, "{differing_pixels}");
+    let undecided = |q: &Question<'_>| q.truth.mask.pixels.iter().filter(|p| format!("{p:?}").contains("Und")).count();
+    let before = undecided(&question);
+    assert_eq!(undecided(&question.answered_by(of_moved)), before + differing_pixels, "nobody knows them then");
+
+    let scene = shipped("area", [96, 72]);
+    let view = View::new(&gpu, &scene).unwrap();
+    let light = scene.light("panel").unwrap();
+    let truth = view.ask(light, &Unwatched).unwrap().truth.mask;
+    let mut mirrored = light.clone();
+    let LightKind::Rectangle { half_width, half_height, .. } = &mut mirrored.kind else { panic!("a rectangle") };
+    (*half_width, *half_height) = (*half_height, -*half_width);
+    assert_ne!(Emitter::new(&mirrored), Emitter::new(light));
+    let of_mirrored = check(&mut mitsuba(&view), &view, &mirrored);
+    assert!(differing(&truth, &of_mirrored.mask).len() > 20);
+}
+
+#[test]
+fn another_mesh_makes_its_answers_void() {
+    let scene = shipped("triangle", [8, 6]);
+    let mut other: Scene = scene.clone();
+    other.positions[0].x += 1e-3;
+    let mut fewer = scene.clone();
+    fewer.meshes[1].casts = false;
+    for wrong in [other, fewer] {
+        assert!(matches!(Mitsuba::new(&wrong, &Casters::new(&scene)), Err(MitsubaError::Void { .. })));
+    }
+}
