@@ -50,7 +50,10 @@ const FAULTS: &[Fault] = &[
         "eye.clip_from_world * position_in_world.yxzw",
         "volume",
     ),
-    ("volume/extruded.wgsl", "- extrusion.light.xyz", "+ extrusion.light.xyz", "volume:extrude=gpu"),
+    ("volume/extrusion.wgsl", "- extrusion.light.xyz;", "+ extrusion.light.xyz;", "volume:extrude=gpu"),
+    ("volume/extruded.wgsl", "extruded(position_in_world)", "extruded(position_in_world.yxzw)", "volume:extrude=gpu"),
+    ("volume/quads.wgsl", "abs(weight) <= face.copy", "abs(weight) < face.copy", "volume:extrude=degenerate-quads"),
+    ("volume/range.wgsl", "bound.depth, 1.0", "1.0 - bound.depth, 1.0", "volume:range_mask=on"),
     ("volume/given.wgsl", "clipped(position_in_world)", "clipped(position_in_world.yxzw)", "volume:extrude=cpu"),
     (
         "volume/near.wgsl",
