@@ -1,8 +1,9 @@
 //! What a silhouette map has besides depths: one point of the true outline per cell of the grid between texel centres.
 //! A receiver is answered by that corner of its cell on whose side of the outline it lies.
 //!
-//! P. Sen, M. Cammarano, P. Hanrahan, "Shadow Silhouette Maps", 2003. `shaders/silhouette/wedges.wgsl` is the twin.
+//! P. Sen, M. Cammarano, P. Hanrahan, "Shadow Silhouette Maps", 2003. `shaders/silhouette/` has the twins.
 
+use super::projection::View;
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Drawing, Gpu, GpuError, Recorder};
 use glam::{DVec2, DVec3, IVec2, UVec2, Vec2};
@@ -31,7 +32,39 @@ pub(super) struct Points {
     pub(super) points: Vec<Vec2>,
 }
 
+/// Least distance from the light at which an edge is cut, relative to its far end.
+const NEAREST: f64 = 1e-4;
+/// An edge is hidden if it is farther than all four corners by more than this, in units of depth.
+const HIDDEN: f64 = 1e-6;
+
 impl Points {
+    /// What the edges leave in the cells of a view whose texels hold `depths` (row by row): the f64 twin of
+    /// `shaders/silhouette/points.wgsl`.
+    pub(super) fn drawn(edges_in_world: &[[DVec3; 2]], view: &View, depths: &[f64]) -> Self {
+        let cells = (view.texels - 1).max(UVec2::ONE);
+        let mut drawn = Self { cells, points: vec![Vec2::splat(EMPTY as f32); cells.element_product() as usize] };
+        let stored = |texel: UVec2| depths[(texel.y * view.texels.x + texel.x) as usize];
+        for [start, end] in edges_in_world.iter().filter_map(|edge| before_the_light(view, *edge)) {
+            let [a, b] = [start, end].map(|point| view.project(point));
+            let [from, to] = [a, b].map(|at| at.uv * view.texels.as_dvec2() - 0.5);
+            let limit = cells.as_dvec2() - 1.0;
+            let clamped = |place: DVec2| place.floor().clamp(DVec2::ZERO, limit).as_uvec2();
+            let (low, high) = (clamped(from.min(to)), clamped(from.max(to)));
+            for cell in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| UVec2::new(x, y))) {
+                let corner = cell.as_dvec2();
+                let Some(middle) = middle_in_cell(from - corner, to - corner) else { continue };
+                let depth = a.depth + middle * (b.depth - a.depth);
+                let corners = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE].map(|step| cell + step);
+                let is_behind = |texel: &UVec2| view.depth_sign * (depth - stored(*texel)) > HIDDEN;
+                if !corners.iter().all(is_behind) {
+                    let point = (from.lerp(to, middle) - corner).clamp(DVec2::ZERO, DVec2::ONE);
+                    drawn.points[(cell.y * cells.x + cell.x) as usize] = point.as_vec2();
+                }
+            }
+        }
+        drawn
+    }
+
     /// The texel that answers for a place in the map: the corner of its cell whose wedge holds it.
     pub(super) fn texel(&self, position_in_texels: DVec2) -> IVec2 {
         let in_cells = position_in_texels - 0.5;
@@ -58,6 +91,32 @@ impl Points {
         let stored = self.points[(cell.y as u32 * self.cells.x + cell.x as u32) as usize];
         if stored.x > 1.0 { CENTRE } else { stored.as_dvec2() }
     }
+}
+
+/// An edge without what lies behind the light or next to it; `None` if that is all of it.
+fn before_the_light(view: &View, [near, far]: [DVec3; 2]) -> Option<[DVec3; 2]> {
+    let [q_near, q_far] = [near, far].map(|point| view.rows.q.as_dvec4().dot(point.extend(1.0)));
+    let least = NEAREST * q_near.max(q_far);
+    let start = if q_near < least { near.lerp(far, (least - q_near) / (q_far - q_near)) } else { near };
+    let end = if q_far < least { far.lerp(near, (least - q_far) / (q_near - q_far)) } else { far };
+    (least > 0.0).then_some([start, end])
+}
+
+/// Where along a segment the middle of its part in the closed unit square lies; `None` if it has none.
+fn middle_in_cell(from: DVec2, to: DVec2) -> Option<f64> {
+    let along = to - from;
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        if along[axis] == 0.0 {
+            if !(0.0..=1.0).contains(&from[axis]) {
+                return None;
+            }
+        } else {
+            let (enter, leave) = (-from[axis] / along[axis], (1.0 - from[axis]) / along[axis]);
+            (first, last) = (first.max(enter.min(leave)), last.min(enter.max(leave)));
+        }
+    }
+    (first <= last).then_some(0.5 * (first + last))
 }
 
 /// Whether a direction lies between two others, turning from the first to the second as from x to y.

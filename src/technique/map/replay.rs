@@ -64,14 +64,20 @@ pub(super) struct Replayer<'r> {
     texels: ExactTexels,
     /// What the GPU holds in them.
     stored: Vec<f64>,
-    /// The silhouettes' points as the GPU holds them.
+    /// The silhouettes' points as they should be drawn over the GPU's depths.
     points: Option<Points>,
+    /// What the GPU drew.
+    stored_points: Option<Points>,
 }
 
 impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
-        let points = map.passes.points(map.job.gpu)?;
+        let stored_points = map.passes.points(map.job.gpu)?;
+        let points = match &map.silhouettes {
+            Some(edges) => Some(Points::drawn(edges, &map.lookup.views[0], &map.all_depths()?)),
+            None => None,
+        };
         let texels_of = |pixel: &u32| {
             let mut indices = Vec::new();
             let Some(receiver) = map.receiver(*pixel) else { return indices };
@@ -81,9 +87,11 @@ impl<'r> Replayer<'r> {
                         indices.extend(tap.and_then(|tap| map.lookup.texel_index(tap.placed.view, tap.texel)));
                     };
                     read(map.lookup.tap(&placed, receiver.normal_in_world, own_texel(points.as_ref(), &placed)));
-                    taps(map, points.as_ref(), placed.position_in_texels, &mut |texel, _| {
-                        read(map.lookup.tap(&placed, receiver.normal_in_world, texel));
-                    });
+                    for points in [points.as_ref(), stored_points.as_ref()] {
+                        taps(map, points, placed.position_in_texels, &mut |texel, _| {
+                            read(map.lookup.tap(&placed, receiver.normal_in_world, texel));
+                        });
+                    }
                 }
             }
             indices
@@ -91,7 +99,7 @@ impl<'r> Replayer<'r> {
         let indices = pixels.par_iter().flat_map_iter(texels_of).collect();
         let texels = ExactTexels::cast(map.job.scene, map.job.casters, &map.lookup, indices);
         let stored = map.passes.gather(map.job.gpu, &map.lookup, &texels.indices)?;
-        Ok(Self { map, unbiased, texels, stored, points })
+        Ok(Self { map, unbiased, texels, stored, points, stored_points })
     }
 
     /// The exact answer at a pixel and what each stage makes of it.
@@ -228,7 +236,8 @@ impl<'r> Replayer<'r> {
     fn by_stored_texels(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let mut value = 0.0;
-        self.each_tap(receiver, placed, &mut |tap, weight| {
+        taps(self.map, self.stored_points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
+            let tap = lookup.tap(placed, receiver.normal_in_world, texel);
             let lit = tap
                 .and_then(|tap| Some((tap, self.stored(&tap)?)))
                 .map(|(tap, depth)| visibility(lookup.is_lit(tap.placed.view, tap.placed.reference, depth)));
