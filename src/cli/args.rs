@@ -21,7 +21,9 @@ pub(super) enum Command {
         gnomon check model.obj -t map:bias=none --size 640x480")]
     Check(CheckArgs),
     /// Draw a scene, lit with the shadows of a technique or with the exact ones
-    #[command(after_help = "Example:\n  gnomon render scenes/room -t map:size=512 -o room.png")]
+    #[command(after_help = "Examples:\n  gnomon render scenes/room -t map:size=512 -o room.png\n  \
+        gnomon render scenes/torus --light lamp --show volumes -o volumes.png\n  \
+        gnomon render scenes/torus -t volume --pipeline darkening --darkening 0.6 -o dark.png")]
     Render(RenderArgs),
     /// Write the exact visibility of a light as an image
     #[command(after_help = "Example:\n  gnomon truth scenes/torus --light lamp -o truth.png")]
@@ -102,9 +104,57 @@ pub(super) struct RenderArgs {
     /// Technique whose shadows to draw [default: the exact shadows]
     #[arg(short, long, value_name = "SPEC")]
     pub(super) technique: Option<String>,
+    /// How the shadows are applied: light on ambient, light on black, or darkness on light
+    #[arg(long, value_enum, default_value_t = PipelineName::AmbientLit)]
+    pub(super) pipeline: PipelineName,
+    /// With --pipeline darkening: how much of the light a shadow takes away, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.5, value_parser = share)]
+    pub(super) darkening: f64,
+    /// Draw what the technique works with into the picture of one light
+    #[arg(long, value_enum)]
+    pub(super) show: Option<Show>,
     /// Picture to write: .png (sRGB) or .exr (linear, unclamped)
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
+}
+
+/// Names of [`crate::shade::Pipeline`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum PipelineName {
+    /// Ambient light, then each light where it is seen
+    AmbientLit,
+    /// All lighting where a light is seen, black elsewhere
+    Black,
+    /// All lighting, then a dark quad over each light's shadow
+    Darkening,
+}
+
+/// What `render --show` draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Show {
+    /// Shadow volumes, translucent, with their edges
+    Volumes,
+    /// The edges at which casters end as the light sees them
+    Silhouette,
+    /// How many volumes the stencil counted at each pixel, in false colour
+    Stencil,
+    /// What the light sees, by stored depth
+    DepthMap,
+    /// The light's frustum in the scene
+    Frustum,
+}
+
+impl Show {
+    /// As it is typed.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Volumes => "volumes",
+            Self::Silhouette => "silhouette",
+            Self::Stencil => "stencil",
+            Self::DepthMap => "depth-map",
+            Self::Frustum => "frustum",
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -206,6 +256,11 @@ pub(super) enum OracleChoice {
 pub(super) enum Listed {
     Scenes,
     Techniques,
+}
+
+fn share(typed: &str) -> Result<f64, String> {
+    let share = typed.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| format!("'{typed}' is not between 0 and 1"))
 }
 
 fn size(typed: &str) -> Result<UVec2, String> {

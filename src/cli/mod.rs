@@ -20,6 +20,7 @@ mod pictures;
 mod render;
 mod report;
 mod scaffold;
+mod show;
 mod tasks;
 mod terminal;
 

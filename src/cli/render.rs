@@ -1,21 +1,28 @@
 //! `gnomon render`: the scene as a picture, lit with a technique's shadows or the exact ones.
 
-use super::args::RenderArgs;
-use super::context::{lights, load, open_gpu, prepare};
-use super::exit;
+use super::args::{PipelineName, RenderArgs};
+use super::context::{lights, load, only_light, open_gpu, prepare};
 use super::output::{ImageFormat, OutFile};
 use super::terminal::{Terminal, say};
+use super::{exit, show};
 use crate::evaluate::View;
 use crate::mask::{Mask, Truth, Visibility};
 use crate::receiver::PixelClass;
 use crate::scene::Light;
-use crate::shade::shade;
+use crate::shade::{Pipeline, shade};
 use crate::technique::Spec;
 
 pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> {
-    let spec = args.technique.as_deref().map(Spec::parse).transpose()?;
+    let shown = args.show.map(|show| show::spec(args, show).map(|spec| (show, spec))).transpose()?;
+    let spec = match &shown {
+        Some((_, spec)) => Some(spec.clone()),
+        None => args.technique.as_deref().map(Spec::parse).transpose()?,
+    };
     let scene = load(&args.scene.scene, args.scene.size)?;
-    let lights = lights(&scene, args.scene.light.as_deref())?;
+    let lights = match shown {
+        Some(_) => vec![only_light(&scene, &args.scene)?],
+        None => lights(&scene, args.scene.light.as_deref())?,
+    };
     let out = OutFile::open(&args.output)?;
     let gpu = open_gpu()?;
     let view = View::new(&gpu, &scene)?;
@@ -25,7 +32,10 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
         .collect::<anyhow::Result<Vec<(&Light, Mask)>>>()?;
     let lit: Vec<(&Light, &Mask)> = masks.iter().map(|(light, mask)| (*light, mask)).collect();
     terminal.proceed()?;
-    let picture = shade(&scene, &view.receivers, &lit);
+    let picture = shade(&scene, &view.receivers, &lit, pipeline(args));
+    if let Some((show, spec)) = shown {
+        return show::run(&out, show, &view, lit[0].0, &spec, picture);
+    }
     let bytes = match out.format {
         ImageFormat::Png => picture.to_png(),
         ImageFormat::Exr => picture.to_exr(),
@@ -33,6 +43,14 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
     out.write(&bytes)?;
     say(&format!("wrote {}", args.output.display()));
     Ok(exit::OK)
+}
+
+fn pipeline(args: &RenderArgs) -> Pipeline {
+    match args.pipeline {
+        PipelineName::AmbientLit => Pipeline::AmbientLit,
+        PipelineName::Black => Pipeline::Black,
+        PipelineName::Darkening => Pipeline::Darkening { amount: args.darkening },
+    }
 }
 
 /// A light's visibility at every pixel it could reach: 0 on surfaces turned away, an undecided pixel half lit.

@@ -16,6 +16,7 @@ mod folder;
 mod light;
 mod load;
 mod obj;
+mod projected;
 mod source;
 
 pub use bare::scene_file_for_obj;
@@ -26,6 +27,7 @@ pub use error::{Place, SceneError};
 pub use file::SceneFile;
 pub use light::{Falloff, Light, LightKind, Segment, emission_normal};
 pub use load::{LoadOptions, Placement, load};
+pub use projected::ProjectedTriangle;
 
 use glam::{DVec3, DVec4, UVec2, Vec3};
 use std::ops::Range;

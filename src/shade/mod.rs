@@ -11,9 +11,13 @@ mod attenuation;
 mod brdf;
 mod encode;
 mod interpolate;
+mod overlay;
+mod pipeline;
 mod terminator;
 
 pub use attenuation::{Incident, incident, incidents};
+pub use overlay::{Overlay, Stroke};
+pub use pipeline::Pipeline;
 pub use terminator::terminator;
 
 use crate::mask::{Mask, Visibility};
@@ -41,17 +45,20 @@ pub struct Picture {
 /// Pixels that a mask leaves out, or that show a mesh that does not receive shadows, have V = 1. A mask that is to
 /// darken facets turned away from the light, which nobody asks about, holds V = 0 there.
 #[must_use]
-pub fn shade(scene: &Scene, receivers: &Receivers, lights: &[(&Light, &Mask)]) -> Picture {
+pub fn shade(scene: &Scene, receivers: &Receivers, lights: &[(&Light, &Mask)], pipeline: Pipeline) -> Picture {
     let emitters: Vec<Emitter> = lights.iter().map(|(light, _)| Emitter::new(light)).collect();
     let pixel_colour = |(pixel, receiver): (usize, &Option<Receiver>)| match receiver {
         None => BACKGROUND,
         Some(receiver) => {
             let takes_shadow = scene.mesh_of(receiver.triangle).receives;
-            let lit = lights.iter().zip(&emitters).map(|((light, mask), emitter)| {
-                let visibility = mask.pixels.get(pixel).copied().flatten().filter(|_| takes_shadow);
-                f64::from(visibility.unwrap_or(Visibility::LIT).get()) * direct_light(scene, receiver, light, emitter)
-            });
-            (own_colour(scene, material_of(scene, receiver)) + lit.sum::<DVec3>()).as_vec3()
+            let lit: Vec<(f64, DVec3)> = (lights.iter().zip(&emitters))
+                .map(|((light, mask), emitter)| {
+                    let visibility = mask.pixels.get(pixel).copied().flatten().filter(|_| takes_shadow);
+                    let visibility = visibility.unwrap_or(Visibility::LIT).get();
+                    (visibility.into(), direct_light(scene, receiver, light, emitter))
+                })
+                .collect();
+            pipeline.colour(own_colour(scene, material_of(scene, receiver)), lit.into_iter()).as_vec3()
         }
     };
     let linear_rgb = receivers.pixels.par_iter().enumerate().map(pixel_colour).collect();

@@ -37,7 +37,12 @@ fn assert_near(actual: Vec3, expected: Vec3) {
 #[test]
 fn lambert_is_albedo_over_pi_times_intensity_times_cosine_over_square_distance() {
     let scene = floor();
-    let picture = shade(&scene, &row(vec![on_floor(3.0, 1.0), None]), &[(&scene.lights[0], &mask(&[None; 2]))]);
+    let picture = shade(
+        &scene,
+        &row(vec![on_floor(3.0, 1.0), None]),
+        &[(&scene.lights[0], &mask(&[None; 2]))],
+        Pipeline::AmbientLit,
+    );
     let square = 9.0 + 1.0 + 25.0;
     let expected = 0.5 / PI * 10.0 * (5.0 / f64::sqrt(square)) / square;
     assert_near(picture.linear_rgb[0], DVec3::splat(expected).as_vec3());
@@ -48,7 +53,8 @@ fn lambert_is_albedo_over_pi_times_intensity_times_cosine_over_square_distance()
 fn classic_mode_has_neither_pi_nor_square() {
     let mut scene = floor();
     scene.mode = LightingMode::Classic;
-    let picture = shade(&scene, &row(vec![on_floor(0.0, 0.0)]), &[(&scene.lights[0], &mask(&[None]))]);
+    let picture =
+        shade(&scene, &row(vec![on_floor(0.0, 0.0)]), &[(&scene.lights[0], &mask(&[None]))], Pipeline::AmbientLit);
     assert_near(picture.linear_rgb[0], Vec3::splat(0.5 * 10.0));
 }
 
@@ -62,11 +68,12 @@ fn visibility_scales_its_own_light_and_nothing_else() {
     let receivers = row(vec![on_floor(0.5, 1.0)]);
     let with = |lamp: Option<f32>, second: Option<f32>| {
         let masks = (mask(&[lamp]), mask(&[second]));
-        shade(&scene, &receivers, &[(&scene.lights[0], &masks.0), (&other, &masks.1)]).linear_rgb[0]
+        shade(&scene, &receivers, &[(&scene.lights[0], &masks.0), (&other, &masks.1)], Pipeline::AmbientLit).linear_rgb
+            [0]
     };
     let unlit = Vec3::new(0.03, 0.52, 0.01);
     assert_near(with(Some(0.0), Some(0.0)), unlit);
-    let only = |light| shade(&scene, &receivers, &[(light, &mask(&[Some(1.0)]))]).linear_rgb[0];
+    let only = |light| shade(&scene, &receivers, &[(light, &mask(&[Some(1.0)]))], Pipeline::AmbientLit).linear_rgb[0];
     assert_near(with(Some(0.0), Some(1.0)), only(&other));
     assert_near(with(Some(1.0), Some(0.0)), only(&scene.lights[0]));
     assert_near(with(Some(1.0), Some(0.25)) - only(&scene.lights[0]), 0.25 * (only(&other) - unlit));
@@ -79,7 +86,9 @@ fn visibility_scales_its_own_light_and_nothing_else() {
 fn a_mesh_that_does_not_receive_ignores_the_mask() {
     let mut scene = floor();
     let receivers = row(vec![on_floor(0.0, 0.0)]);
-    let shadowed = |scene: &Scene| shade(scene, &receivers, &[(&scene.lights[0], &mask(&[Some(0.0)]))]).linear_rgb[0];
+    let shadowed = |scene: &Scene| {
+        shade(scene, &receivers, &[(&scene.lights[0], &mask(&[Some(0.0)]))], Pipeline::AmbientLit).linear_rgb[0]
+    };
     assert_eq!(shadowed(&scene), Vec3::ZERO);
     scene.meshes[0].receives = false;
     assert!(shadowed(&scene).x > 0.05);
@@ -89,7 +98,9 @@ fn a_mesh_that_does_not_receive_ignores_the_mask() {
 fn flat_shading_uses_the_face_normal_whatever_the_corners_say() {
     let mut scene = floor();
     let receivers = row(vec![on_floor(1.0, 2.0)]);
-    let lit = |scene: &Scene| shade(scene, &receivers, &[(&scene.lights[0], &mask(&[None]))]).linear_rgb[0];
+    let lit = |scene: &Scene| {
+        shade(scene, &receivers, &[(&scene.lights[0], &mask(&[None]))], Pipeline::AmbientLit).linear_rgb[0]
+    };
     let expected = lit(&scene);
     scene.corner_normals = vec![[Vec3::new(0.6, 0.8, 0.0); 3]; 2];
     assert!(lit(&scene).distance(expected) > 1e-3, "the leaning normals show with Phong shading");
@@ -101,7 +112,7 @@ fn flat_shading_uses_the_face_normal_whatever_the_corners_say() {
 fn brightest_inside_and_at_corners(scene: &Scene) -> (f32, f32) {
     let brightest = |pixels: Vec<Option<Receiver>>| {
         let masks = mask(&vec![None; pixels.len()]);
-        let picture = shade(scene, &row(pixels), &[(&scene.lights[0], &masks)]);
+        let picture = shade(scene, &row(pixels), &[(&scene.lights[0], &masks)], Pipeline::AmbientLit);
         picture.linear_rgb.iter().map(|colour| colour.x).fold(0.0, f32::max)
     };
     let inside = (-7..=7).flat_map(|x| (-7..=7).map(move |z| on_floor(f64::from(x) / 2.0, f64::from(z) / 2.0)));
@@ -123,7 +134,9 @@ fn gouraud_has_its_extrema_at_vertices_and_phong_has_not() {
 fn gouraud_at_a_corner_is_the_corner_lit() {
     let mut scene = floor();
     let receivers = row(vec![on_floor(4.0, 4.0)]);
-    let lit = |scene: &Scene| shade(scene, &receivers, &[(&scene.lights[0], &mask(&[None]))]).linear_rgb[0];
+    let lit = |scene: &Scene| {
+        shade(scene, &receivers, &[(&scene.lights[0], &mask(&[None]))], Pipeline::AmbientLit).linear_rgb[0]
+    };
     let phong = lit(&scene);
     scene.shading = Shading::Gouraud;
     assert_near(lit(&scene), phong);

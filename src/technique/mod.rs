@@ -33,6 +33,7 @@ use crate::receiver::{PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::watch::Interrupted;
 use footprint::Footprint;
+use glam::{DMat4, UVec2};
 use param::Param;
 
 /// Every technique, in the order in which lists show them.
@@ -122,6 +123,26 @@ pub trait Prepared: Sync {
     /// The projected size of the technique's samples at a receiver; `None` for techniques without samples, and outside
     /// the map.
     fn footprint(&self, pixel: u32) -> Option<Footprint>;
+    /// World to light clip space for each frustum the light looks through; none for techniques without.
+    fn light_frusta(&self) -> Vec<DMat4> {
+        Vec::new()
+    }
+    /// The first depth map of the last run; `None` for techniques without.
+    ///
+    /// # Errors
+    /// As [`Prepared::replay`].
+    fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
+        Ok(None)
+    }
+}
+
+/// What a light's depth map holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightDepths {
+    /// Width and height in texels.
+    pub size: UVec2,
+    /// Stored depths, row by row; `None` where nothing was drawn.
+    pub depths: Vec<Option<f64>>,
 }
 
 /// What one run gave.

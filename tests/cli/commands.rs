@@ -147,3 +147,23 @@ fn doctor_names_the_adapter_and_its_limits() {
         "oracle exact",
     ]);
 }
+
+#[test]
+fn what_techniques_work_with_is_drawn() {
+    let folder = scene_in_temp();
+    let draw = |file: &str, args: &[&str]| {
+        let scene = ["render", "scene", "--light", "lamp", "-o", file];
+        gnomon_in(folder.path(), &[&scene, args].concat()).returns(0);
+        fs::read(folder.path().join(file)).unwrap()
+    };
+    let mut pictures: Vec<Vec<u8>> = ["volumes", "silhouette", "stencil", "depth-map", "frustum"]
+        .map(|show| draw(&format!("{show}.png"), &["--show", show]))
+        .to_vec();
+    pictures
+        .extend(["ambient-lit", "black", "darkening"].map(|name| draw(&format!("{name}.png"), &["--pipeline", name])));
+    pictures.sort();
+    pictures.dedup();
+    assert_eq!(pictures.len(), 8, "eight different pictures");
+    let refused = ["render", "scene", "--light", "lamp", "--show", "stencil", "-t", "map", "-o", "x.png"];
+    gnomon_in(folder.path(), &refused).returns(2).complains(&["needs a volume technique"]);
+}

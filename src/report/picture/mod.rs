@@ -8,6 +8,8 @@ mod canvas;
 mod cause_colours;
 mod cause_map;
 mod colour;
+mod count_map;
+mod depth_map;
 mod error_map;
 mod legend;
 mod palette;
@@ -16,6 +18,8 @@ mod value_map;
 
 pub use cause_colours::colour_of_cause;
 pub use cause_map::{CauseMap, cause_map};
+pub use count_map::{CountMap, count_map};
+pub use depth_map::{DepthMap, depth_map};
 pub use error_map::{ErrorMap, error_map};
 pub use value_map::{ValueMap, value_map};
 

@@ -7,8 +7,8 @@ use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::DVec3;
+use crate::technique::{Answer, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
+use glam::{DMat4, DVec3};
 
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
@@ -105,6 +105,19 @@ impl Prepared for PreparedMap<'_> {
         let receiver = self.receiver(pixel)?;
         let (_, _, q) = self.lookup.project(receiver.point_in_world).ok()?;
         texel_footprint(&self.job, &self.lookup.frustum, &receiver, q)
+    }
+
+    fn light_frusta(&self) -> Vec<DMat4> {
+        vec![self.lookup.frustum.light_clip_from_world.as_dmat4()]
+    }
+
+    fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
+        let texels = self.lookup.frustum.texels;
+        let indices: Vec<u32> = (0..texels.element_product()).collect();
+        let depths = self.passes.gather(self.job.gpu, &indices)?;
+        // Cleared texels are exactly at one end of the range.
+        let drawn = |depth: f64| (depth > 0.0 && depth < 1.0).then_some(depth);
+        Ok(Some(LightDepths { size: texels, depths: depths.into_iter().map(drawn).collect() }))
     }
 }
 

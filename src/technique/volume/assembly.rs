@@ -6,8 +6,9 @@
 
 use super::casting::{CastingObject, Facing, facing};
 use super::extrude::{Reach, extrude};
+use super::settings::Settings;
 use super::silhouette::{SilhouetteEdge, silhouette};
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use glam::{DVec3, DVec4};
 
 /// A vertex of sides and back caps: homogeneous, rebased world. Where the vertex shader extrudes, the unmoved position
@@ -45,6 +46,17 @@ pub(super) struct Faces {
 }
 
 impl Plan {
+    /// The plan that settings ask for.
+    pub(super) fn of(light: &Light, reach: Reach, settings: &Settings) -> Self {
+        Self {
+            light: light.homogeneous(),
+            reach,
+            per_triangle: settings.per_triangle,
+            extrudes_on_gpu: settings.extrudes_on_gpu,
+            away_facing_back_cap: settings.away_facing_back_cap,
+        }
+    }
+
     /// A directional light's infinite volumes meet in one point: no back cap.
     pub(super) fn ends_in_a_point(&self) -> bool {
         self.light.w == 0.0 && self.reach == Reach::Infinite
@@ -91,7 +103,8 @@ impl Plan {
         faces
     }
 
-    fn edges(&self, object: &CastingObject) -> Vec<SilhouetteEdge> {
+    /// The silhouette of one object, or of each of its triangles.
+    pub(super) fn edges(&self, object: &CastingObject) -> Vec<SilhouetteEdge> {
         if self.per_triangle {
             object.towards_light.iter().flat_map(|&triangle| silhouette(&[triangle])).collect()
         } else {
@@ -165,7 +178,7 @@ mod tests {
                     } else {
                         scene.lights[0].kind
                     };
-                    let light_in_scene = crate::scene::Light { kind, ..scene.lights[0].clone() };
+                    let light_in_scene = Light { kind, ..scene.lights[0].clone() };
                     let light = light_in_scene.homogeneous();
                     let objects = casting_objects(&scene, &light_in_scene, &welded, &settings);
                     let plan = Plan {

@@ -16,6 +16,7 @@ mod extrude;
 mod eye;
 mod facts;
 mod near_projection;
+mod outline;
 mod params;
 mod passes;
 mod pipelines;

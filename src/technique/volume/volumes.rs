@@ -75,13 +75,7 @@ impl Volumes {
             Count::Mixed => Side::Behind,
         };
         let sides: Vec<Side> = objects.iter().map(side).collect();
-        let plan = Plan {
-            light: homogeneous,
-            reach,
-            per_triangle: settings.per_triangle,
-            extrudes_on_gpu: settings.extrudes_on_gpu,
-            away_facing_back_cap: settings.away_facing_back_cap,
-        };
+        let plan = Plan::of(light, reach, settings);
         let faces = |wanted: Side| {
             let chosen = objects.iter().zip(&sides).filter(|(_, side)| **side == wanted).map(|(object, _)| object);
             let mut faces = plan.faces(scene, chosen, welded.count);
