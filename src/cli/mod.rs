@@ -5,6 +5,7 @@ mod args;
 mod check;
 mod columns;
 mod command;
+mod compare_render;
 mod context;
 mod diagnose;
 mod doctor;
@@ -17,6 +18,7 @@ mod masks;
 mod matrix;
 mod output;
 mod pictures;
+mod profile;
 mod render;
 mod report;
 mod scaffold;
@@ -43,6 +45,8 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Command::Check(args) => check::run(&args, &terminal),
         Command::Render(args) => render::run(&args, &terminal),
+        Command::Profile(args) => profile::run(&args, &terminal),
+        Command::CompareRender(args) => compare_render::run(&args, &terminal),
         Command::Truth(args) => masks::truth(&args, &terminal),
         Command::Mask(args) => masks::mask(&args, &terminal),
         Command::Judge(args) => judge::run(&args, &terminal),

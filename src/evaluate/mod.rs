@@ -8,10 +8,12 @@ mod diagnose;
 #[cfg(test)]
 mod faults;
 mod jitter;
+mod profile;
 mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
+pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
 pub use view::{Oracle, Question, View};
 
 use crate::cause::Replay;

@@ -9,6 +9,7 @@ mod format;
 pub mod mask_image;
 pub mod model;
 pub mod picture;
+pub mod profile;
 mod summary;
 pub mod table;
 

@@ -13,6 +13,7 @@ pub mod param;
 pub mod planar;
 pub mod projective_texture;
 mod receiver_buffer;
+pub mod soft;
 mod spec;
 mod unsupported;
 pub mod volume;
@@ -39,7 +40,7 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture]
+    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture, &soft::Soft]
 }
 
 /// Every shader module that any technique can build, as label and files.
