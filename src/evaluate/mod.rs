@@ -8,11 +8,13 @@ mod diagnose;
 #[cfg(test)]
 mod faults;
 mod jitter;
+mod motion;
 mod profile;
 mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
+pub use motion::{Flips, STEP_PX, flips};
 pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
 pub use view::{Oracle, Question, View};
 
