@@ -17,6 +17,7 @@ pub mod projective_texture;
 pub mod ray_query;
 mod receiver_buffer;
 pub mod silhouette;
+pub mod soft;
 mod spec;
 mod unsupported;
 pub mod volume;
@@ -52,6 +53,7 @@ pub fn registry() -> &'static [&'static dyn Technique] {
         &silhouette::Silhouette,
         &irregular::Irregular,
         &ray_query::RayQuery,
+        &soft::Soft,
     ]
 }
 
