@@ -133,6 +133,15 @@ fn registries_and_files_match_one_to_one() {
         let stem = filter.choice().name.replace('-', "_");
         assert_eq!(filter.shader().path, format!("map/filter/{stem}.wgsl"));
     }
+    // A projection with one view selects nothing and shares its file.
+    let shaders = files_below(&root().join("shaders/map/projection"), "wgsl").into_iter();
+    let shaders: BTreeSet<String> = shaders.map(|(path, _)| format!("map/projection/{path}")).collect();
+    let named = projection::registry().iter().map(|projection| projection.shader().path.to_owned());
+    assert_eq!(shaders, named.collect());
+    for projection in projection::registry() {
+        let own = format!("map/projection/{}.wgsl", projection.name().replace('-', "_"));
+        assert!([own.as_str(), "map/projection/one_view.wgsl"].contains(&projection.shader().path));
+    }
     // Control: a file that nobody registered would be one more.
     assert_ne!(map("filter", "Bias"), filters);
     assert!(filters.len() > 1);
@@ -179,7 +188,8 @@ fn every_value_of_the_map_axes_is_explained() {
     let page = doc("map.md");
     let explained = |name: &str| page.contains(&format!("- `{name}`")) || page.contains(&format!("\n| `{name}` |"));
     let filters = filter::registry().iter().map(|f| f.choice().name);
-    for name in filters.chain(bias::registry().iter().map(|b| b.name())) {
+    let projections = projection::registry().iter().map(|p| p.name());
+    for name in filters.chain(bias::registry().iter().map(|b| b.name())).chain(projections) {
         assert!(explained(name), "docs/map.md does not explain {name}");
     }
     assert!(!explained("median"));

@@ -10,7 +10,6 @@ use glam::{DVec2, DVec3, IVec2, UVec2};
 use gnomon::cause::{Cause, Replay};
 use gnomon::evaluate::Evaluation;
 use gnomon::receiver::{PixelClass, Receiver};
-use gnomon::scene::Segment;
 use gnomon::technique::Spec;
 use gnomon::technique::map::{DepthFormat, Lookup, Settings};
 use support::scenes::shipped;
@@ -79,14 +78,14 @@ impl<'e> Twin<'e> {
             .filter(|(_, class)| **class == PixelClass::Asked)
             .filter_map(|(pixel, _)| pixel.map(|receiver| receiver.point_in_world))
             .collect();
-        let frustum = settings.projection.fit(scene, light, &settings, &visible).expect("supported");
-        Self { shot, settings, lookup: Lookup::new(frustum, &settings, light) }
+        let views = settings.projection.fit(scene, light, &settings, &visible).expect("supported");
+        Self { shot, settings, lookup: Lookup::new(views, &settings, light) }
     }
 
     /// What the twin can answer at a pixel within some tolerances.
     fn reach(&self, pixel: u32, within: Tolerances) -> Reach {
         let receiver = self.shot.view.receivers.pixels[pixel as usize].expect("asked");
-        let Ok(placed) = self.lookup.place(receiver.point_in_world, receiver.normal_in_world) else {
+        let Ok(placed) = self.lookup.place(0, receiver.point_in_world, receiver.normal_in_world) else {
             return Reach { least: 1.0, most: 1.0 };
         };
         let rounding = self.reference_rounding(&receiver, placed.reference);
@@ -105,7 +104,7 @@ impl<'e> Twin<'e> {
 
     /// Whether a texel can answer dark, and whether lit, to a reference depth that is off by up to `rounding`.
     fn answers(&self, reference: f64, rounding: f64, texel: IVec2, within: Tolerances) -> [bool; 2] {
-        if self.lookup.texel_index(texel).is_none() {
+        if self.lookup.texel_index(0, texel).is_none() {
             return [false, true];
         }
         let mut answers = [false, false];
@@ -113,7 +112,7 @@ impl<'e> Twin<'e> {
             let (stored, stored_rounding) = self.stored(texel, shift);
             let rounding = within.roundings * (rounding + stored_rounding);
             for offset in [-rounding, 0.0, rounding] {
-                answers[usize::from(self.lookup.is_lit(reference, stored + offset))] = true;
+                answers[usize::from(self.lookup.is_lit(0, reference, stored + offset))] = true;
             }
         }
         answers
@@ -124,18 +123,18 @@ impl<'e> Twin<'e> {
     fn stored(&self, texel: IVec2, shift: DVec2) -> (f64, f64) {
         let centre = texel.as_dvec2() + 0.5;
         let scene = self.shot.view.scene;
-        let [from, to] = self.lookup.ray_through(centre + shift);
+        let view = &self.lookup.views[0];
+        let mut nearest = (view.cleared(), 0.0);
+        let Some(ray) = self.lookup.ray_through(0, centre + shift, &scene.bounds()) else { return nearest };
         let mut hits = Vec::new();
-        self.shot.view.casters.all_hits(&Segment { from, to }, None, &mut hits);
-        let cleared = if self.lookup.frustum.reversed { 0.0 } else { 1.0 };
-        let mut nearest = (cleared, 0.0);
+        self.shot.view.casters.all_hits(&ray, None, &mut hits);
         for hit in hits {
             let corners = scene.triangle_in_world(hit.triangle);
-            let in_map = self.lookup.frustum.project(from.lerp(to, hit.t));
-            let depth = (in_map.z / in_map.w + self.lookup.hardware_bias(corners)).clamp(0.0, 1.0);
-            if self.lookup.frustum.depth_sign() * (depth - nearest.0) < 0.0 {
+            let Some(drawn) = self.lookup.drawn_depth(0, ray.from.lerp(ray.to, hit.t)) else { continue };
+            let depth = (drawn + self.lookup.hardware_bias(0, corners)).clamp(0.0, 1.0);
+            if view.is_nearer(depth, nearest.0) {
                 let [a, b, c] = corners;
-                let slope = self.lookup.slope_per_texel(a, (b - a).cross(c - a).normalize_or_zero());
+                let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero());
                 nearest = (depth, INTERPOLATION_UNITS * UNIT * (slope.dot(centre) + depth) + self.format_step(depth));
             }
         }
@@ -152,12 +151,8 @@ impl<'e> Twin<'e> {
     /// How far rounding to f32 may move the depth that is compared: the position through the matrix, and the bias.
     fn reference_rounding(&self, receiver: &Receiver, reference: f64) -> f64 {
         let point = receiver.point_in_world;
-        let slope = self.lookup.slope_per_texel(point, receiver.normal_in_world);
-        let q = self.lookup.frustum.project(point).w;
-        let per_metre = 1.0 / self.lookup.frustum.metres_per_depth(q);
-        let texel_m = self.lookup.frustum.texel_m(q);
-        let position = point.abs().max_element() * 2.0 * UNIT * (per_metre + (slope / texel_m).element_sum());
-        position + 4.0 * UNIT * reference.abs().max(1.0)
+        let site = self.lookup.views[0].site(point);
+        site.rounding(site.slope_per_texel(receiver.normal_in_world)) + 4.0 * UNIT * reference.abs().max(1.0)
     }
 }
 

@@ -32,8 +32,9 @@ fn in_picture(scene: &Scene, point: DVec3) -> DVec2 {
 }
 
 /// The point of a receiver's plane that a place in the map looks at.
-fn on_plane(lookup: &Lookup, receiver: &Receiver, position_in_texels: DVec2) -> DVec3 {
-    let [near, far] = lookup.ray_through(position_in_texels);
+fn on_plane(scene: &Scene, lookup: &Lookup, receiver: &Receiver, position_in_texels: DVec2) -> DVec3 {
+    let ray = lookup.ray_through(0, position_in_texels, &scene.bounds()).expect("meets the scene");
+    let (near, far) = (ray.from, ray.to);
     let normal = receiver.normal_in_world;
     near + (far - near) * (normal.dot(receiver.point_in_world - near) / normal.dot(far - near))
 }
@@ -52,14 +53,17 @@ fn the_texels_size_in_the_picture_is_what_finite_differences_say() {
         let (evaluation, lookup) = (shot.evaluate("map"), lookup(&shot, "map"));
         for pixel in shot.asked().into_iter().step_by(37) {
             let receiver = receiver(&shot, pixel);
-            let Ok((at, ..)) = lookup.project(receiver.point_in_world) else { continue };
+            let Ok(site) = lookup.project(receiver.point_in_world) else { continue };
+            let at = site.position_in_texels();
             let footprint = evaluation.prepared.footprint(pixel).expect("inside the map");
             // Seen nearly edge-on by light or eye, a step of any size leaves the neighbourhood in which it is straight.
             if footprint.projective_factor > 50.0 || footprint.m > 50.0 {
                 continue;
             }
             let side = |axis: DVec2| {
-                let end = |sign: f64| in_picture(&scene, on_plane(&lookup, &receiver, at + sign * STEP_TEXELS * axis));
+                let end = |sign: f64| {
+                    in_picture(&scene, on_plane(&scene, &lookup, &receiver, at + sign * STEP_TEXELS * axis))
+                };
                 (end(1.0) - end(-1.0)) / (2.0 * STEP_TEXELS)
             };
             let (u, v) = (side(DVec2::X), side(DVec2::Y));
@@ -143,8 +147,8 @@ fn tilted(tilt_deg: f64) -> Scene {
 fn closed_form_m(shot: &Shot<'_>, lookup: &Lookup, kernel: f64) -> f64 {
     let biases = shot.asked().into_iter().map(|pixel| {
         let Receiver { point_in_world, normal_in_world, .. } = receiver(shot, pixel);
-        let (_, depth, q) = lookup.project(point_in_world).expect("in the map");
-        lookup.closed_form(point_in_world, normal_in_world, (q, depth), kernel) * lookup.frustum.metres_per_depth(q)
+        let site = lookup.project(point_in_world).expect("in the map");
+        lookup.closed_form(&site, normal_in_world, DVec2::splat(kernel)) * site.metres_per_depth()
     });
     biases.fold(0.0, f64::max)
 }

@@ -161,8 +161,8 @@ fn too_much_bias_detaches_the_contact_by_the_predicted_strip() {
     let typed = format!("map:size=1024,bias_depth_m={BIAS_M}");
     let detached = explained(&view, &question, &typed);
     let settings = Settings::of(&Spec::parse(&typed).unwrap());
-    let frustum = settings.projection.fit(&scene, question.light, &settings, &[]).unwrap();
-    let slack_m = SLACK_TEXELS * frustum.texel_m(1.0).max_element();
+    let views = settings.projection.fit(&scene, question.light, &settings, &[]).unwrap();
+    let slack_m = SLACK_TEXELS * views[0].site(scene.bounds().centre()).texel_m().max_element();
     let (mut inside, mut lost_inside, mut lost_beyond) = (0, 0, 0);
     for (pixel, receiver) in view.receivers.pixels.iter().enumerate() {
         let in_shadow = question.truth.mask.pixels[pixel] == Some(Truth::Known(Visibility::SHADOW));
@@ -266,7 +266,7 @@ fn the_map_does_not_depend_on_the_camera() {
         let asked = |(receiver, class): (&Option<_>, &PixelClass)| receiver.filter(|_| *class == PixelClass::Asked);
         let visible: Vec<_> = view.receivers.pixels.iter().zip(&question.classes).filter_map(asked).collect();
         let visible: Vec<_> = visible.iter().map(|receiver: &Receiver| receiver.point_in_world).collect();
-        settings.projection.fit(view.scene, question.light, &settings, &visible).unwrap()
+        settings.projection.fit(view.scene, question.light, &settings, &visible).unwrap()[0].rows
     };
     assert_eq!(frustum(&view, "scene"), frustum(&other, "scene"));
     assert_ne!(frustum(&view, "receivers"), frustum(&other, "receivers"));

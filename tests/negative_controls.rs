@@ -9,7 +9,7 @@ use gnomon::cast::Casters;
 use gnomon::evaluate::{Question, View};
 use gnomon::mask::{Mask, TruthMask, Visibility};
 use gnomon::receiver::Receiver;
-use gnomon::scene::{LightKind, Scene, Segment};
+use gnomon::scene::{LightKind, Scene};
 use gnomon::technique::map::{Lookup, Placed};
 use gnomon::truth;
 use gnomon::verdict::{WRONG_ABOVE_HARD, judge};
@@ -196,18 +196,17 @@ fn twin(
     is_lit: impl Fn(&Lookup, f64, f64) -> bool,
 ) -> Mask {
     let lookup = MappedOutline::new(view.scene, question.light, "map:size=512").lookup;
-    let cleared = if lookup.frustum.reversed { 0.0 } else { 1.0 };
+    let cleared = lookup.views[0].cleared();
+    let bounds = view.scene.bounds();
     let visibility = |receiver: &Receiver| {
         let Ok(Placed { position_in_texels, reference, .. }) =
-            lookup.place(receiver.point_in_world, receiver.normal_in_world)
+            lookup.place(0, receiver.point_in_world, receiver.normal_in_world)
         else {
             return Visibility::LIT;
         };
-        let [from, to] = lookup.ray_through(texel(position_in_texels).floor() + 0.5);
-        let hit = view.casters.nearest_hit(&Segment { from, to }, None);
-        let stored = hit.map_or(cleared, |hit| {
-            let in_map = lookup.frustum.project(from.lerp(to, hit.t));
-            in_map.z / in_map.w
+        let stored = lookup.ray_through(0, texel(position_in_texels).floor() + 0.5, &bounds).map_or(cleared, |ray| {
+            let hit = view.casters.nearest_hit(&ray, None);
+            hit.map_or(cleared, |hit| lookup.views[0].project(ray.from.lerp(ray.to, hit.t)).depth)
         });
         if is_lit(&lookup, reference, stored) { Visibility::LIT } else { Visibility::SHADOW }
     };
@@ -231,11 +230,11 @@ fn a_mutated_lookup_is_not_the_shaders() {
         let question = ask(&view, light);
         let by_shader = judged(&view, &question, "map:size=512").mask;
         let off_by = |twin: &Mask| differences(twin, &by_shader);
-        let right: fn(&Lookup, f64, f64) -> bool = Lookup::is_lit;
+        let right = |lookup: &Lookup, reference, stored| lookup.is_lit(0, reference, stored);
         let off = off_by(&twin(&view, &question, |at| at, right));
         assert!(off <= PRECISION_PX, "{light}: {off}");
         let other_convention =
-            |lookup: &Lookup, reference, stored| !lookup.is_lit(reference, stored) || reference == stored;
+            |lookup: &Lookup, reference, stored| !lookup.is_lit(0, reference, stored) || reference == stored;
         let faults = [
             ("depth compared the other way round", twin(&view, &question, |at| at, other_convention)),
             ("half a texel aside", twin(&view, &question, |at| at + 0.5, right)),

@@ -1,19 +1,15 @@
-// One shadow-map lookup per receiver: place it in the map, guard, bias, filter. Twin of src/technique/map/lookup.rs,
-// which is the specification; a filter file defines filter_visibility.
+// One shadow-map lookup per receiver: select its view, place it there, guard, bias, filter. Twin of
+// src/technique/map/lookup.rs, which is the specification; a projection's file defines select_views, a filter's file
+// filter_visibility.
 
 struct Lookup {
-    map_from_world: mat4x4f,
-    // Transposed inverse of map_from_world: takes planes where that takes points.
-    plane_in_map_from_world: mat4x4f,
     // Homogeneous light: w = 0 with a vector towards a directional one.
     light: vec4f,
     texels: vec2f,
-    texel_at_q1: vec2f,
-    // One unit of depth is x + y q^2 metres.
-    metres_per_depth_terms: vec2f,
     kernel: u32,
-    // +1 where depth grows away from the light, -1 reversed.
-    depth_sign: f32,
+    // SEAM_* and BORDER_*.
+    seam: u32,
+    border: u32,
     closed_form_kernel: f32,
     raster_slack_texels: f32,
     cap_texels: f32,
@@ -23,14 +19,26 @@ struct Lookup {
     fixed_step: f32,
     // Step of a float format relative to the depth, 0 for fixed point.
     float_step: f32,
-    padding: u32,
 }
 @group(0) @binding(2) var<uniform> lookup: Lookup;
-@group(0) @binding(3) var stored_depths: texture_depth_2d;
+@group(0) @binding(3) var stored_depths: texture_depth_2d_array;
+@group(0) @binding(4) var<storage, read> views: array<View>;
 
-// Depth per texel beyond which every bias is at its cap.
-const STEEPEST: f32 = 1e3;
-const POSITION_ROUNDING: f32 = 1.1920929e-7; // 2^-23
+const SEAM_PER_TAP: u32 = 0u;
+const BORDER_SHADOW: u32 = 1u;
+const BORDER_CLAMP_EDGE: u32 = 2u;
+
+// A receiver placed in a view.
+struct Placed {
+    view: u32,
+    point_in_world: vec3f,
+    normal_in_world: vec3f,
+    position_in_texels: vec2f,
+    reference: f32,
+}
+
+// The receiver whose lookup is under way: filters hand taps by texel only.
+var<private> own: Placed;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) thread: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -42,56 +50,108 @@ fn main(@builtin(global_invocation_id) thread: vec3u, @builtin(num_workgroups) g
 }
 
 fn visibility(point_in_world: vec3f, normal_in_world: vec3f) -> f32 {
-    let moved = moved_along_normal(point_in_world, normal_in_world);
-    let in_map = lookup.map_from_world * vec4f(moved, 1.0);
-    let q = in_map.w;
-    if q <= 0.0 {
-        return 1.0;
+    let shares = select_views(point_in_world);
+    let first = visibility_in(shares.first, point_in_world, normal_in_world);
+    if shares.second_weight == 0.0 {
+        return first;
     }
-    let uv = in_map.xy / q;
-    let depth = in_map.z / q;
-    if any(uv < vec2f(0.0)) || any(uv >= vec2f(1.0)) || depth < 0.0 || depth > 1.0 {
-        return 1.0;
-    }
-    let reference = depth - lookup.depth_sign * bias_depth(moved, normal_in_world, q, depth);
-    return filter_visibility(uv * lookup.texels, reference);
+    return mix(first, visibility_in(shares.second, point_in_world, normal_in_world), shares.second_weight);
 }
 
-fn moved_along_normal(point_in_world: vec3f, normal_in_world: vec3f) -> vec3f {
-    let q = (lookup.map_from_world * vec4f(point_in_world, 1.0)).w;
-    let texel_m = lookup.texel_at_q1 * q;
+fn visibility_in(view: u32, point_in_world: vec3f, normal_in_world: vec3f) -> f32 {
+    let moved = moved_along_normal(views[view], point_in_world, normal_in_world);
+    let at = project(views[view], moved);
+    let is_inside = all(at.uv >= vec2f(0.0)) && all(at.uv < vec2f(1.0)) && at.depth >= 0.0 && at.depth <= 1.0;
+    if at.q <= 0.0 || !(is_inside || lookup.border == BORDER_CLAMP_EDGE) {
+        return border_visibility();
+    }
+    own = placed(view, moved, normal_in_world, vec2f(lookup.closed_form_kernel));
+    return filter_visibility(own.position_in_texels, own.reference);
+}
+
+// A moved receiver in any view, with a bias for texels up to `reach_texels` away.
+fn placed(view: u32, moved: vec3f, normal_in_world: vec3f, reach_texels: vec2f) -> Placed {
+    var at = project(views[view], moved);
+    if lookup.border == BORDER_CLAMP_EDGE {
+        at.depth = clamp(at.depth, 0.0, 1.0);
+    }
+    let bias = bias_depth(views[view], moved, normal_in_world, at, reach_texels);
+    let reference = at.depth - views[view].depth_sign * bias;
+    return Placed(view, moved, normal_in_world, at.uv * lookup.texels, reference);
+}
+
+fn moved_along_normal(view: View, point_in_world: vec3f, normal_in_world: vec3f) -> vec3f {
+    if lookup.normal_texels == 0.0 {
+        return point_in_world;
+    }
+    let width = texel_m(gradients(view, point_in_world, project(view, point_in_world)), lookup.texels);
     let towards_light = normalize(lookup.light.xyz - point_in_world * lookup.light.w);
     let sine = length(cross(normal_in_world, towards_light));
-    return point_in_world + normal_in_world * (lookup.normal_texels * max(texel_m.x, texel_m.y) * sine);
+    return point_in_world + normal_in_world * (lookup.normal_texels * max(width.x, width.y) * sine);
 }
 
 // How far the comparison is moved towards the light, in units of depth.
-fn bias_depth(point_in_world: vec3f, normal_in_world: vec3f, q: f32, depth: f32) -> f32 {
-    let metres_per_depth = lookup.metres_per_depth_terms.x + lookup.metres_per_depth_terms.y * q * q;
-    let along_light = lookup.depth_m / metres_per_depth;
+fn bias_depth(view: View, point_in_world: vec3f, normal_in_world: vec3f, at: InMap, reach_texels: vec2f) -> f32 {
+    let around = gradients(view, point_in_world, at);
+    let along_light = lookup.depth_m / metres_per_depth(around);
     if lookup.closed_form_kernel == 0.0 {
         return along_light;
     }
-    let texel_m = lookup.texel_at_q1 * q;
-    let plane = vec4f(normal_in_world, -dot(normal_in_world, point_in_world));
-    let plane_in_map = lookup.plane_in_map_from_world * plane;
-    // A plane that the light sees edge-on has z = 0.
-    let edge_on = abs(plane_in_map.z) * STEEPEST * lookup.texels <= abs(plane_in_map.xy);
-    let slope_per_texel = select(abs(plane_in_map.xy / plane_in_map.z) / lookup.texels, vec2f(STEEPEST), edge_on);
-    let kernel = lookup.closed_form_kernel + lookup.raster_slack_texels;
-    let slope = kernel * (slope_per_texel.x + slope_per_texel.y);
-    let largest = max(max(abs(point_in_world.x), abs(point_in_world.y)), abs(point_in_world.z));
-    let position = largest * POSITION_ROUNDING
-        * (1.0 / metres_per_depth + slope_per_texel.x / texel_m.x + slope_per_texel.y / texel_m.y);
-    let format = 4.0 * (lookup.fixed_step + lookup.float_step * depth);
-    let cap = lookup.cap_texels * max(texel_m.x, texel_m.y) / metres_per_depth;
-    return along_light + min(slope + position + format, cap);
+    let slope = slope_per_texel(around, normal_in_world, lookup.texels);
+    let sufficient = dot(reach_texels + lookup.raster_slack_texels, slope)
+        + rounding(view, point_in_world, at, slope, lookup.texels)
+        + 4.0 * (lookup.fixed_step + lookup.float_step * abs(at.depth));
+    let width = texel_m(around, lookup.texels);
+    return along_light + min(sufficient, lookup.cap_texels * max(width.x, width.y) / metres_per_depth(around));
 }
 
-// Whether a reference depth is lit by a texel; texels outside the map light everything. Equality is lit.
+// Whether the receiver under way is lit by a texel of its view, whose reference depth is given. Equality is lit.
 fn is_lit(reference: f32, texel: vec2i) -> bool {
-    if any(texel < vec2i(0)) || any(texel >= vec2i(lookup.texels)) {
-        return true;
+    if is_in_view(texel) {
+        return compares_lit(own.view, reference, texel);
     }
-    return lookup.depth_sign * (reference - textureLoad(stored_depths, texel, 0)) <= 0.0;
+    if lookup.seam == SEAM_PER_TAP {
+        let across = texel_across(texel);
+        if across.is_found {
+            return compares_lit(across.placed.view, across.placed.reference, across.texel);
+        }
+    }
+    if lookup.seam != SEAM_PER_TAP || lookup.border == BORDER_CLAMP_EDGE {
+        return compares_lit(own.view, reference, clamp(texel, vec2i(0), vec2i(lookup.texels) - 1));
+    }
+    return lookup.border != BORDER_SHADOW;
+}
+
+// A texel of another view that stands for one beyond the side of the receiver's view.
+struct Across {
+    is_found: bool,
+    placed: Placed,
+    texel: vec2i,
+}
+
+fn texel_across(texel: vec2i) -> Across {
+    let at = project(views[own.view], own.point_in_world);
+    let uv = (vec2f(texel) + 0.5) / lookup.texels;
+    let beside = point_beside(views[own.view], own.point_in_world, at, uv);
+    let view = select_views(beside).first;
+    let found = project(views[view], beside);
+    let across = vec2i(floor(found.uv * lookup.texels));
+    let seen = project(views[view], own.point_in_world);
+    if view == own.view || found.q <= 0.0 || seen.q <= 0.0 || !is_in_view(across) {
+        return Across(false, own, texel);
+    }
+    let reach_texels = abs(vec2f(across) + 0.5 - seen.uv * lookup.texels);
+    return Across(true, placed(view, own.point_in_world, own.normal_in_world, reach_texels), across);
+}
+
+fn border_visibility() -> f32 {
+    return select(1.0, 0.0, lookup.border == BORDER_SHADOW);
+}
+
+fn is_in_view(texel: vec2i) -> bool {
+    return all(texel >= vec2i(0)) && all(texel < vec2i(lookup.texels));
+}
+
+fn compares_lit(view: u32, reference: f32, texel: vec2i) -> bool {
+    return views[view].depth_sign * (reference - textureLoad(stored_depths, texel, view, 0)) <= 0.0;
 }

@@ -243,7 +243,7 @@ impl Told<'_> {
         let Question { light, .. } = self.adviser.question;
         let scene = &self.adviser.args.scene.scene;
         let subject = Subject { scene, light: &light.name, spec, size: self.adviser.view.scene.image_size };
-        say(&format!("              {}", subject.check(self.adviser.args.phases)));
+        say(&format!("              {}", subject.check(self.adviser.args.phases, 0)));
         Ok(())
     }
 }

@@ -8,11 +8,11 @@ use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
 use super::{exit, pictures, report};
-use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, jittered};
+use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, flips, jittered};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
 use crate::report::html::Imagery;
-use crate::report::model::{Jitter, Report, Run, Status};
+use crate::report::model::{Jitter, Motion, Report, Run, Status};
 use crate::report::table::table;
 use crate::scene::Scene;
 use crate::suggest::hint;
@@ -89,11 +89,13 @@ impl Session<'_> {
         task: &Task<'_>,
         subject: &Subject<'_>,
     ) -> anyhow::Result<Run> {
-        let asked = report::question(view.scene, task.light, &task.spec, subject.check(self.args.jitter));
+        let asked = report::question(view.scene, task.light, &task.spec, subject.check(self.args.jitter, self.args.motion));
         let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
-            Ok((evaluation, jittered(view, question, &task.spec, self.args.jitter, self.terminal)?))
+            let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
+            let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;
+            Ok((evaluation, phases, moved))
         });
-        let (evaluation, phases) = match outcome {
+        let (evaluation, phases, moved) = match outcome {
             Ok(outcome) => outcome,
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
                 self.pixels.add(question, None)?;
@@ -112,6 +114,7 @@ impl Session<'_> {
         run.cost = Some(evaluation.cost.clone());
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(&fractions);
+        run.motion = Motion::of(&moved.of_camera, &moved.of_light);
         run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
         self.pixels.add(question, Some((&evaluation, &subject.explain_some_pixel())))?;
         if let Some(out) = &self.out {

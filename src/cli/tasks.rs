@@ -5,13 +5,14 @@ use super::args::CheckArgs;
 use super::context::lights;
 use crate::report::model::{BudgetOutcome, Jitter};
 use crate::scene::{Budget, Light, Scene};
-use crate::technique::Spec;
+use crate::technique::map::{Settings, projection};
+use crate::technique::{Spec, Unsupported};
 use crate::verdict::Verdict;
 use anyhow::Context;
 use std::path::Path;
 
-/// What is checked when neither the command line nor the scene says: the default map, a finer, filtered one, and stencil
-/// volumes.
+/// What is checked when neither the command line nor the scene says: the default map, a finer, filtered one (both as a
+/// cube where receivers lie all around the light), and stencil volumes.
 const DEFAULT_SPECS: [&str; 3] = ["map", "map:size=2048,filter=pcf-box3", "volume"];
 
 /// One technique to run for one light, and the limits on it.
@@ -42,7 +43,7 @@ pub(super) fn tasks<'s>(
     for light in lights(scene, args.light.as_deref())? {
         let binding: Vec<_> = budgets.iter().filter(|(_, budget)| binds(budget, light)).collect();
         let specs = match (typed, binding.as_slice()) {
-            ([], []) => defaults.clone(),
+            ([], []) => defaults.iter().map(|spec| all_around(spec, scene, light)).collect::<Result<_, _>>()?,
             ([], binding) => distinct(binding.iter().map(|(spec, _)| spec)),
             (typed, _) => typed.to_vec(),
         };
@@ -52,6 +53,18 @@ pub(super) fn tasks<'s>(
         }));
     }
     Ok(tasks)
+}
+
+/// The default map as a cube, where the receivers lie so far around the light that one frustum cannot hold them.
+fn all_around(spec: &Spec, scene: &Scene, light: &Light) -> anyhow::Result<Spec> {
+    if spec.technique().id() != "map" {
+        return Ok(spec.clone());
+    }
+    let settings = Settings::of(spec);
+    match projection::by_name("single").supports(scene, light, &settings) {
+        Err(Unsupported::FieldOfView { .. }) => Ok(spec.with("projection", "cube")?),
+        _ => Ok(spec.clone()),
+    }
 }
 
 fn budgets<'s>(path: &Path, scene: &'s Scene) -> anyhow::Result<Vec<(Spec, &'s Budget)>> {

@@ -8,12 +8,14 @@ mod diagnose;
 #[cfg(test)]
 mod faults;
 mod jitter;
+mod motion;
 mod occluders;
 mod view;
 
 pub use cost::time_in_turn;
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
+pub use motion::{Flips, STEP_PX, flips};
 pub use occluders::occluders;
 pub use view::{Oracle, Question, TruthStore, View};
 

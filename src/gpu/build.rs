@@ -33,9 +33,21 @@ pub(crate) struct Drawing<'d> {
 impl Gpu {
     /// A two-dimensional texture of one level and one sample.
     pub(crate) fn texture(&self, label: &str, size: UVec2, format: TextureFormat, usage: TextureUsages) -> Texture {
+        self.texture_array(label, size, 1, format, usage)
+    }
+
+    /// Layers of two-dimensional textures of one level and one sample.
+    pub(crate) fn texture_array(
+        &self,
+        label: &str,
+        size: UVec2,
+        layers: u32,
+        format: TextureFormat,
+        usage: TextureUsages,
+    ) -> Texture {
         self.device.create_texture(&TextureDescriptor {
             label: Some(label),
-            size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers },
             mip_level_count: 1,
             sample_count: 1,
             dimension: TextureDimension::D2,

@@ -4,7 +4,7 @@
 //! image in pixels; m > 1 is undersampled. Formulas: docs/footprint.md.
 
 use crate::cause::Cause;
-use glam::{DMat2, DMat4, DVec2, DVec3, UVec2};
+use glam::{DMat4, DVec2, DVec3, UVec2};
 
 /// The footprint of one texel at one receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,10 +28,10 @@ pub struct FootprintInput<'a> {
     pub clip_from_world: &'a DMat4,
     /// Picture size in pixels.
     pub image_size: UVec2,
-    /// Map matrix: (u q, v q, depth q, q).
-    pub map_from_world: &'a DMat4,
-    /// Map size in texels.
-    pub map_size: UVec2,
+    /// Where the receiver lies in its view of the map.
+    pub position_in_texels: DVec2,
+    /// World steps on the receiver's plane that move by one texel along u and along v.
+    pub texel_steps_m: [DVec3; 2],
     /// Receiver point.
     pub point_in_world: DVec3,
     /// Unit geometric normal.
@@ -50,20 +50,19 @@ impl Footprint {
     /// `None` where the light sees the surface edge-on, so that a texel's image has no bound.
     #[must_use]
     pub fn new(input: &FootprintInput<'_>) -> Option<Self> {
-        let tangent = input.normal_in_world.any_orthonormal_vector();
-        let tangents = [tangent, input.normal_in_world.cross(tangent)];
         let half_image = 0.5 * input.image_size.as_dvec2() * DVec2::new(1.0, -1.0);
-        let pixels = jacobian(input.clip_from_world, input.point_in_world, tangents, half_image);
-        let texels = jacobian(input.map_from_world, input.point_in_world, tangents, input.map_size.as_dvec2());
-        let pixels_per_texel = pixels * texels.inverse();
-        let (u, v) = (pixels_per_texel.x_axis, pixels_per_texel.y_axis);
+        let at = *input.clip_from_world * input.point_in_world.extend(1.0);
+        let [u, v] = input.texel_steps_m.map(|step| {
+            let moved = *input.clip_from_world * step.extend(0.0);
+            let change = (moved.truncate().truncate() * at.w - at.truncate().truncate() * moved.w) / (at.w * at.w);
+            change * half_image
+        });
         if !(u.is_finite() && v.is_finite()) {
             return None;
         }
-        let in_map = *input.map_from_world * input.point_in_world.extend(1.0);
         let cosine = |direction: DVec3| input.normal_in_world.dot(direction).abs();
         Some(Self {
-            position_in_texels: in_map.truncate().truncate() / in_map.w * input.map_size.as_dvec2(),
+            position_in_texels: input.position_in_texels,
             m: u.length().max(v.length()),
             m_diagonal: (u + v).length().max((u - v).length()),
             perspective_factor: input.texel_m / input.pixel_m,
@@ -89,24 +88,12 @@ pub fn aliasing_cause(footprint: Option<&Footprint>) -> Cause {
     }
 }
 
-/// Derivative of projected coordinates (times `scale`) along two tangents: columns per tangent.
-fn jacobian(projection: &DMat4, point: DVec3, tangents: [DVec3; 2], scale: DVec2) -> DMat2 {
-    let at = *projection * point.extend(1.0);
-    let along = |tangent: DVec3| {
-        let moved = *projection * tangent.extend(0.0);
-        let change = (moved.truncate().truncate() * at.w - at.truncate().truncate() * moved.w) / (at.w * at.w);
-        change * scale
-    };
-    DMat2::from_cols(along(tangents[0]), along(tangents[1]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::dcamera::rh;
 
     const IMAGE: UVec2 = UVec2::new(640, 480);
-    const MAP: UVec2 = UVec2::splat(512);
     const HEIGHT_M: f64 = 10.0;
     const WIDTH_M: f64 = 8.0;
 
@@ -116,21 +103,20 @@ mod tests {
         let view = rh::view::look_at_mat4(eye, DVec3::ZERO, DVec3::NEG_Z);
         let aspect = f64::from(IMAGE.x) / f64::from(IMAGE.y);
         let clip_from_world = rh::proj::directx::perspective_infinite_reverse(1.0, aspect, 0.1) * view;
-        let half = 0.5 * WIDTH_M;
-        let uv_from_clip =
-            DMat4::from_cols_array(&[0.5, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.5, 0.0, 1.0]);
-        let map_from_world = uv_from_clip * rh::proj::directx::orthographic(-half, half, -half, half, 1.0, 20.0) * view;
+        let texel_m = WIDTH_M / 512.0;
+        // Straight down onto the tilted plane: a step along x climbs.
+        let texel_steps_m = [DVec3::new(texel_m, -texel_m * tilt.tan(), 0.0), DVec3::new(0.0, 0.0, texel_m)];
         let pixel_m = 2.0 * 0.5_f64.tan() / f64::from(IMAGE.y) * HEIGHT_M;
         Footprint::new(&FootprintInput {
             clip_from_world: &clip_from_world,
             image_size: IMAGE,
-            map_from_world: &map_from_world,
-            map_size: MAP,
+            position_in_texels: DVec2::splat(256.0),
+            texel_steps_m,
             point_in_world: DVec3::ZERO,
             normal_in_world: DVec3::new(tilt.sin(), tilt.cos(), 0.0),
             towards_eye: DVec3::Y,
             towards_light: DVec3::Y,
-            texel_m: WIDTH_M / f64::from(MAP.x),
+            texel_m,
             pixel_m,
         })
         .unwrap()
@@ -142,7 +128,6 @@ mod tests {
             let footprint = footprint(tilt);
             assert!((footprint.m - footprint.perspective_factor).abs() < 1e-9 * footprint.m, "{footprint:?}");
             assert!((footprint.projective_factor - 1.0).abs() < 1e-12);
-            assert!((footprint.position_in_texels - DVec2::splat(256.0)).length() < 1e-9);
         }
     }
 }

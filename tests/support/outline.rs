@@ -95,15 +95,15 @@ impl MappedOutline {
     /// For a `map` specification whose fit does not follow the camera.
     pub(crate) fn new(scene: &Scene, light: &Light, typed: &str) -> Self {
         let settings = Settings::of(&Spec::parse(typed).unwrap());
-        let frustum = settings.projection.fit(scene, light, &settings, &[]).unwrap();
-        let lookup = Lookup::new(frustum, &settings, light);
-        let corners = blocker(scene).map(|corner| lookup.project(corner).unwrap().0);
+        let views = settings.projection.fit(scene, light, &settings, &[]).unwrap();
+        let lookup = Lookup::new(views, &settings, light);
+        let corners = blocker(scene).map(|corner| lookup.project(corner).unwrap().position_in_texels());
         Self { lookup, outline: Outline::new(corners) }
     }
 
     /// How many texels a point is from the edge of the blocker's shadow.
     pub(crate) fn texels_from_edge(&self, point_in_world: DVec3) -> f64 {
-        self.outline.distance(self.lookup.project(point_in_world).unwrap().0)
+        self.outline.distance(self.lookup.project(point_in_world).unwrap().position_in_texels())
     }
 }
 

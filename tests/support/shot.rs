@@ -49,8 +49,14 @@ impl<'s> Shot<'s> {
         let (spec, default) = (parsed(typed), parsed("map"));
         match default.technique().supports(&default, self.view.scene, self.question.light, &GPU) {
             Ok(()) => spec,
-            Err(_) => spec.with("fov_deg", "120").expect("a legal angle"),
+            Err(_) if spec.technique().id() == "map" => spec.with("fov_deg", "120").expect("a legal angle"),
+            Err(_) => spec,
         }
+    }
+
+    /// Whether a technique answers for this light at all.
+    pub(crate) fn supports(&self, spec: &Spec) -> bool {
+        spec.technique().supports(spec, self.view.scene, self.question.light, &GPU).is_ok()
     }
 
     /// The pixels that are asked and decided.

@@ -116,7 +116,7 @@ impl Session<'_> {
     ) -> anyhow::Result<(Run, Ended)> {
         let size = row.scene.image_size;
         let subject = Subject { scene: path, light: &row.light.name, spec: &row.spec, size };
-        let asked = report::question(row.scene, row.light, &row.spec, subject.check(0));
+        let asked = report::question(row.scene, row.light, &row.spec, subject.check(0, 0));
         let watch = RowWatch::new(self.terminal, self.limits.seconds);
         let outcome = self.limits.admit(view, question, &row.spec).and_then(|()| {
             evaluate(view, question, &row.spec, Effort::FULL, &watch).map_err(|error| watch.told(error))

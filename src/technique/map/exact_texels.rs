@@ -2,8 +2,7 @@
 
 use super::lookup::Lookup;
 use crate::cast::Casters;
-use crate::scene::{Scene, Segment};
-use glam::DVec2;
+use crate::scene::Scene;
 use rayon::prelude::*;
 
 /// One texel of the ideal map.
@@ -25,7 +24,7 @@ pub(in crate::technique) struct ExactTexels {
 }
 
 impl ExactTexels {
-    /// Casts through the centres of the texels with these indices (row by row; any order, repeats allowed).
+    /// Casts through the centres of the texels with these indices (layer by layer, row by row; any order, repeats allowed).
     pub(in crate::technique) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, mut indices: Vec<u32>) -> Self {
         indices.par_sort_unstable();
         indices.dedup();
@@ -45,25 +44,25 @@ impl ExactTexels {
 }
 
 fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) -> ExactTexel {
-    let width = lookup.frustum.texels.x;
-    let centre = DVec2::new((index % width).into(), (index / width).into()) + 0.5;
-    let [from, to] = lookup.ray_through(centre);
+    let (view, texel) = lookup.texel_of(index);
+    let cleared = lookup.views[view].cleared();
+    let mut texel_holds = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
+    let centre = texel.as_dvec2() + 0.5;
+    let Some(ray) = lookup.ray_through(view, centre, &casters.bounds()) else { return texel_holds };
     let mut hits = Vec::new();
-    casters.all_hits(&Segment { from, to }, None, &mut hits);
-    let cleared = if lookup.frustum.reversed { 0.0 } else { 1.0 };
-    let mut texel = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
-    let is_nearer = |a: f64, b: f64| lookup.frustum.depth_sign() * (a - b) < 0.0;
-    for hit in hits {
-        let in_map = lookup.frustum.project(from.lerp(to, hit.t));
-        let unbiased_depth = (in_map.z / in_map.w).clamp(0.0, 1.0);
-        let bias = lookup.hardware_bias(scene.triangle_in_world(hit.triangle));
-        let depth = (in_map.z / in_map.w + bias).clamp(0.0, 1.0);
-        if texel.triangle.is_none() || is_nearer(depth, texel.depth) {
-            texel = ExactTexel { depth, triangle: Some(hit.triangle), ..texel };
+    casters.all_hits(&ray, None, &mut hits);
+    for hit in hits.iter().filter(|hit| lookup.draws_side(scene, hit.triangle)) {
+        let Some(drawn) = lookup.drawn_depth(view, ray.from.lerp(ray.to, hit.t)) else { continue };
+        let unbiased_depth = drawn.clamp(0.0, 1.0);
+        let bias = lookup.hardware_bias(view, scene.triangle_in_world(hit.triangle));
+        let depth = (drawn + bias).clamp(0.0, 1.0);
+        let is_nearer = |a: f64, b: f64| lookup.views[view].is_nearer(a, b);
+        if texel_holds.triangle.is_none() || is_nearer(depth, texel_holds.depth) {
+            texel_holds = ExactTexel { depth, triangle: Some(hit.triangle), ..texel_holds };
         }
-        if is_nearer(unbiased_depth, texel.unbiased_depth) {
-            texel.unbiased_depth = unbiased_depth;
+        if is_nearer(unbiased_depth, texel_holds.unbiased_depth) {
+            texel_holds.unbiased_depth = unbiased_depth;
         }
     }
-    texel
+    texel_holds
 }

@@ -1,12 +1,13 @@
-//! One shadow-map lookup: place the receiver in the map, guard, bias, compare. This f64 twin is the specification of
-//! `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
+//! One shadow-map lookup: select the view, place the receiver in it, guard, bias, compare. This f64 twin is the
+//! specification of `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
 
 use super::bias::Amounts;
-use super::projection::LightFrustum;
+use super::projection::{Projection, Shares, Site, View};
+use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
-use crate::scene::Light;
+use crate::scene::{Bounds, Light, Scene, Segment};
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat4, DVec2, DVec3, DVec4, IVec2, Mat4};
+use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
 /// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
 /// to that much of its slope; interpolation adds up to four units of 2⁻²⁴ per texel from the map's corner.
@@ -14,26 +15,32 @@ fn raster_slack_texels(texels: u32) -> f64 {
     1.0 / 256.0 + 4.0 * f64::from(texels) * 2.0_f64.powi(-24)
 }
 
-/// Depth per texel beyond which every bias is at its cap.
-const STEEPEST: f64 = 1e3;
-/// Relative rounding of an f32 position through a matrix.
-const POSITION_ROUNDING: f64 = f32::EPSILON as f64;
 /// Format steps that a closed-form bias adds for the rounding of both sides of the comparison.
 const FORMAT_STEPS: f64 = 4.0;
 
 /// Everything a lookup needs besides the receiver.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Lookup {
-    /// The fitted frustum.
-    pub frustum: LightFrustum,
+    /// The fitted views, one layer of the map each.
+    pub views: Vec<View>,
     /// The bias amounts.
     pub bias: Amounts,
+    projection: &'static dyn Projection,
+    seam: Seam,
+    border: Border,
+    near_mode: NearMode,
+    caster_sides: CasterSides,
     format: DepthFormat,
     light: DVec4,
-    world_from_map: DMat4,
 }
 
-/// Why a receiver has no place in the map.
+impl std::fmt::Debug for Lookup {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lookup").field("projection", &self.projection.name()).field("views", &self.views).finish()
+    }
+}
+
+/// Why a receiver has no place in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outside {
     /// Behind the light or beside the map.
@@ -44,19 +51,28 @@ pub enum Outside {
     Far,
 }
 
-/// A receiver placed in the map.
+/// A receiver placed in a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
+    /// Index of the view.
+    pub view: usize,
     /// Where the comparison takes place: the receiver, moved along its normal if the bias says so.
     pub point_in_world: DVec3,
     /// uv × texels.
     pub position_in_texels: DVec2,
     /// Depth of that point.
     pub depth: f64,
-    /// Homogeneous q.
-    pub q: f64,
     /// Depth compared with the stored one: `depth` less the bias.
     pub reference: f64,
+}
+
+/// A texel that a lookup reads, and the receiver as its view sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tap {
+    /// The receiver in the texel's view, which is not its own view for taps across a seam.
+    pub placed: Placed,
+    /// The texel.
+    pub texel: IVec2,
 }
 
 impl Placed {
@@ -68,15 +84,19 @@ impl Placed {
 }
 
 impl Lookup {
-    /// For one frustum and light.
+    /// For the views of one light.
     #[must_use]
-    pub fn new(frustum: LightFrustum, settings: &Settings, light: &Light) -> Self {
+    pub fn new(views: Vec<View>, settings: &Settings, light: &Light) -> Self {
         Self {
-            world_from_map: frustum.map_from_world.as_dmat4().inverse(),
+            views,
             bias: settings.bias_amounts(),
+            projection: settings.projection,
+            seam: settings.seam,
+            border: settings.border,
+            near_mode: settings.near_mode,
+            caster_sides: settings.caster_sides,
             format: settings.format,
             light: light.homogeneous(),
-            frustum,
         }
     }
 
@@ -86,137 +106,207 @@ impl Lookup {
         Self { bias: Amounts::NONE, ..self.clone() }
     }
 
-    /// Places a receiver.
-    ///
-    /// # Errors
-    /// Which side of the frustum it is on, if it is outside.
-    pub fn place(&self, point_in_world: DVec3, normal_in_world: DVec3) -> Result<Placed, Outside> {
-        let moved = self.moved_along_normal(point_in_world, normal_in_world);
-        let (position_in_texels, depth, q) = self.project(moved)?;
-        let bias = self.bias_depth(moved, normal_in_world, q, depth);
-        let reference = depth - self.frustum.depth_sign() * bias;
-        Ok(Placed { point_in_world: moved, position_in_texels, depth, q, reference })
+    /// The light: w = 1, or 0 with a vector towards it.
+    #[must_use]
+    pub(super) fn light(&self) -> DVec4 {
+        self.light
     }
 
-    /// (uv × texels, depth, q) of a point, through the guard.
+    /// Width and height of every view in texels.
+    #[must_use]
+    pub fn texels(&self) -> UVec2 {
+        self.views[0].texels
+    }
+
+    /// The views that answer for a receiver.
+    #[must_use]
+    pub fn select(&self, point_in_world: DVec3) -> Shares {
+        self.projection.select(&self.views, point_in_world)
+    }
+
+    /// A world point as its own view sees it, through the guard.
     ///
     /// # Errors
-    /// Which side of the frustum it is on, if it is outside.
-    pub fn project(&self, point_in_world: DVec3) -> Result<(DVec2, f64, f64), Outside> {
-        let in_map = self.frustum.project(point_in_world);
-        let q = in_map.w;
-        if q <= 0.0 {
+    /// Which side of the view it is on, if it is outside.
+    pub fn project(&self, point_in_world: DVec3) -> Result<Site<'_>, Outside> {
+        self.project_in(self.select(point_in_world).first, point_in_world)
+    }
+
+    /// A world point as a view sees it, through the guard.
+    ///
+    /// # Errors
+    /// Which side of the view it is on, if it is outside.
+    pub fn project_in(&self, view: usize, point_in_world: DVec3) -> Result<Site<'_>, Outside> {
+        let site = self.views[view].site(point_in_world);
+        // Negated, so that NaN is outside.
+        let is_beside = !(site.at.uv.min_element() >= 0.0 && site.at.uv.max_element() < 1.0);
+        if site.at.q <= 0.0 || is_beside {
             return Err(Outside::Frustum);
         }
-        let (uv, depth) = (in_map.truncate().truncate() / q, in_map.z / q);
-        if uv.min_element() < 0.0 || uv.max_element() >= 1.0 {
-            return Err(Outside::Frustum);
-        }
-        if !(0.0..=1.0).contains(&depth) {
-            let is_near = (depth < 0.0) != self.frustum.reversed;
+        if !(0.0..=1.0).contains(&site.at.depth) {
+            let is_near = (site.at.depth < 0.0) != (site.view.depth_sign < 0.0);
             return Err(if is_near { Outside::Near } else { Outside::Far });
         }
-        Ok((uv * self.frustum.texels.as_dvec2(), depth, q))
+        Ok(site)
     }
 
-    fn moved_along_normal(&self, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
-        let q = self.frustum.project(point_in_world).w;
-        let texel_m = self.frustum.texel_m(q).max_element();
+    /// Whether casters are drawn with that side towards the light.
+    #[must_use]
+    pub fn draws_side(&self, scene: &Scene, triangle: u32) -> bool {
+        match self.caster_sides {
+            CasterSides::All => true,
+            CasterSides::LightFacing => scene.facing(triangle, self.light) > 0.0,
+            CasterSides::AwayFacing => scene.facing(triangle, self.light) < 0.0,
+        }
+    }
+
+    /// The depth of a caster's point in a view, not yet clamped to 0..=1; `None` if it is not drawn.
+    #[must_use]
+    pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
+        let site = self.views[view].site(point_in_world);
+        let is_drawn = site.at.q > 0.0 && (self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&site.at.depth));
+        is_drawn.then_some(site.at.depth)
+    }
+
+    /// Places a receiver in a view.
+    ///
+    /// # Errors
+    /// Which side of the view it is on, if it is outside and the border does not stretch.
+    pub fn place(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> Result<Placed, Outside> {
+        let moved = self.moved_along_normal(view, point_in_world, normal_in_world);
+        match self.project_in(view, moved) {
+            Err(outside) if self.border != Border::ClampEdge || self.views[view].project(moved).q <= 0.0 => {
+                Err(outside)
+            }
+            Ok(_) | Err(_) => Ok(self.placed(view, moved, normal_in_world, DVec2::splat(self.bias.closed_form_kernel))),
+        }
+    }
+
+    /// A moved receiver in any view, with a bias for texels up to `reach_texels` away.
+    fn placed(&self, view: usize, moved: DVec3, normal_in_world: DVec3, reach_texels: DVec2) -> Placed {
+        let site = self.views[view].site(moved);
+        let depth = if self.border == Border::ClampEdge { site.at.depth.clamp(0.0, 1.0) } else { site.at.depth };
+        let reference = depth - site.view.depth_sign * self.bias_depth(&site, normal_in_world, reach_texels);
+        Placed { view, point_in_world: moved, position_in_texels: site.position_in_texels(), depth, reference }
+    }
+
+    fn moved_along_normal(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
+        if self.bias.normal_texels == 0.0 {
+            return point_in_world;
+        }
+        let texel_m = self.views[view].site(point_in_world).texel_m().max_element();
         let towards_light = (self.light.truncate() - point_in_world * self.light.w).normalize_or_zero();
         let sine = normal_in_world.cross(towards_light).length();
         point_in_world + normal_in_world * (self.bias.normal_texels * texel_m * sine)
     }
 
     /// How far the comparison is moved towards the light, in units of depth.
-    #[must_use]
-    pub fn bias_depth(&self, point_in_world: DVec3, normal_in_world: DVec3, q: f64, depth: f64) -> f64 {
-        let along_light = self.bias.depth_m / self.frustum.metres_per_depth(q);
+    fn bias_depth(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
+        let along_light = self.bias.depth_m / site.metres_per_depth();
         if self.bias.closed_form_kernel == 0.0 {
             return along_light;
         }
-        let kernel = self.bias.closed_form_kernel;
-        along_light + self.closed_form(point_in_world, normal_in_world, (q, depth), kernel)
+        along_light + self.closed_form(site, normal_in_world, reach_texels)
     }
 
     /// The closed-form bias: what suffices, but no more than the cap (docs/map.md#bias), in units of depth.
     #[must_use]
-    pub fn closed_form(
-        &self,
-        point_in_world: DVec3,
-        normal_in_world: DVec3,
-        (q, depth): (f64, f64),
-        kernel: f64,
-    ) -> f64 {
-        let cap = self.bias.cap_texels * self.frustum.texel_m(q).max_element() / self.frustum.metres_per_depth(q);
-        self.sufficient_bias(point_in_world, normal_in_world, (q, depth), kernel).min(cap)
+    pub fn closed_form(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
+        let cap = self.bias.cap_texels * site.texel_m().max_element() / site.metres_per_depth();
+        self.sufficient_bias(site, normal_in_world, reach_texels).min(cap)
     }
 
-    /// The bias that the receiver's own slope needs for a kernel of that many texel widths, in units of depth.
+    /// The bias that the receiver's own slope needs for texels up to that far away, in units of depth.
     #[must_use]
-    pub fn sufficient_bias(
-        &self,
-        point_in_world: DVec3,
-        normal_in_world: DVec3,
-        (q, depth): (f64, f64),
-        kernel: f64,
-    ) -> f64 {
-        let metres_per_depth = self.frustum.metres_per_depth(q);
-        let texel_m = self.frustum.texel_m(q);
-        let slope_per_texel = self.slope_per_texel(point_in_world, normal_in_world);
-        let slope = (kernel + raster_slack_texels(self.frustum.texels.max_element())) * slope_per_texel.element_sum();
-        let largest = point_in_world.abs().max_element();
-        let position =
-            largest * POSITION_ROUNDING * (1.0 / metres_per_depth + (slope_per_texel / texel_m).element_sum());
-        slope + position + FORMAT_STEPS * self.format.step(depth)
+    pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
+        let slope_per_texel = site.slope_per_texel(normal_in_world);
+        let reach = reach_texels + raster_slack_texels(self.texels().max_element());
+        reach.dot(slope_per_texel) + site.rounding(slope_per_texel) + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
-    /// Change of depth from one texel to the next along u and along v on the receiver's plane, without sign.
+    /// The texel of a placed receiver's view, or beyond the view's side what stands for it; `None` outside the map.
     #[must_use]
-    pub fn slope_per_texel(&self, point_in_world: DVec3, normal_in_world: DVec3) -> DVec2 {
-        let gradient = self.frustum.depth_gradient(&self.world_from_map, point_in_world, normal_in_world);
-        let slope = gradient.abs() / self.frustum.texels.as_dvec2();
-        // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
-        DVec2::new(STEEPEST.min(slope.x), STEEPEST.min(slope.y))
+    pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
+        if self.is_inside(texel) {
+            return Some(Tap { placed: *placed, texel });
+        }
+        let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
+        let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
+        across.or_else(|| {
+            let nearest = texel.clamp(IVec2::ZERO, self.texels().as_ivec2() - 1);
+            is_clamped.then_some(Tap { placed: *placed, texel: nearest })
+        })
+    }
+
+    /// The texel of another view that a texel beyond the side of the receiver's view falls in.
+    fn tap_across(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
+        let own = &self.views[placed.view];
+        let uv = (texel.as_dvec2() + 0.5) / own.texels.as_dvec2();
+        let at = own.project(placed.point_in_world);
+        let beside = own.layout.point_beside(&own.rows, placed.point_in_world, &at, uv);
+        let view = self.select(beside).first;
+        let found = self.views[view].project(beside);
+        let texel = (found.uv * own.texels.as_dvec2()).floor().as_ivec2();
+        let site = self.views[view].site(placed.point_in_world);
+        if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.is_inside(texel) {
+            return None;
+        }
+        let reach_texels = (texel.as_dvec2() + 0.5 - site.position_in_texels()).abs();
+        Some(Tap { placed: self.placed(view, placed.point_in_world, normal_in_world, reach_texels), texel })
+    }
+
+    /// What the comparison gives outside the map.
+    #[must_use]
+    pub fn border_visibility(&self) -> f64 {
+        if self.border == Border::Shadow { 0.0 } else { 1.0 }
     }
 
     /// Whether a reference depth is lit by a stored one. Equality is lit.
     #[must_use]
-    pub fn is_lit(&self, reference: f64, stored: f64) -> bool {
-        self.frustum.depth_sign() * (reference - stored) <= 0.0
+    pub fn is_lit(&self, view: usize, reference: f64, stored: f64) -> bool {
+        self.views[view].depth_sign * (reference - stored) <= 0.0
     }
 
-    /// Index of a texel row by row, or `None` outside the map, where everything is lit.
+    fn is_inside(&self, texel: IVec2) -> bool {
+        texel.min_element() >= 0 && texel.cmplt(self.texels().as_ivec2()).all()
+    }
+
+    /// Index of a texel, layer by layer and row by row, or `None` outside its view.
     #[must_use]
-    pub fn texel_index(&self, texel: IVec2) -> Option<u32> {
-        let size = self.frustum.texels.as_ivec2();
-        let is_inside = texel.min_element() >= 0 && texel.x < size.x && texel.y < size.y;
-        is_inside.then(|| texel.y as u32 * self.frustum.texels.x + texel.x as u32)
+    pub fn texel_index(&self, view: usize, texel: IVec2) -> Option<u32> {
+        let size = self.texels();
+        let row = view as u32 * size.y + texel.y as u32;
+        self.is_inside(texel).then(|| row * size.x + texel.x as u32)
+    }
+
+    /// View and texel of an index.
+    #[must_use]
+    pub fn texel_of(&self, index: u32) -> (usize, UVec2) {
+        let size = self.texels();
+        let row = index / size.x;
+        ((row / size.y) as usize, UVec2::new(index % size.x, row % size.y))
     }
 
     /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
     #[must_use]
-    pub fn hardware_bias(&self, [a, b, c]: [DVec3; 3]) -> f64 {
+    pub fn hardware_bias(&self, view: usize, [a, b, c]: [DVec3; 3]) -> f64 {
         if self.bias.constant_units == 0 && self.bias.slope == 0.0 {
             return 0.0;
         }
-        let depth_of = |corner: DVec3| {
-            let in_map = self.frustum.project(corner);
-            (in_map.z / in_map.w).clamp(0.0, 1.0)
-        };
+        let view = &self.views[view];
+        let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
         let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
-        let slope = self.slope_per_texel(a, (b - a).cross(c - a).normalize_or_zero()).max_element();
+        let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
         let constant = f64::from(self.bias.constant_units) * self.format.hardware_unit(largest);
         let bias = constant + self.bias.slope * slope;
         let clamped = if self.bias.clamp > 0.0 { bias.min(self.bias.clamp) } else { bias };
-        self.frustum.depth_sign() * clamped
+        view.depth_sign * clamped
     }
 
-    /// World points on the near and far plane that a map position looks along.
+    /// All world points within `bounds` that a view's map position looks along, nearest to the light first.
     #[must_use]
-    pub fn ray_through(&self, position_in_texels: DVec2) -> [DVec3; 2] {
-        let uv = position_in_texels / self.frustum.texels.as_dvec2();
-        let (near, far) = if self.frustum.reversed { (1.0, 0.0) } else { (0.0, 1.0) };
-        [near, far].map(|depth| self.world_from_map.project_point3(uv.extend(depth)))
+    pub fn ray_through(&self, view: usize, position_in_texels: DVec2, bounds: &Bounds) -> Option<Segment> {
+        self.views[view].ray_through(position_in_texels, bounds)
     }
 
     /// The uniform of the shader.
@@ -227,22 +317,18 @@ impl Lookup {
             fixed => (fixed.step(1.0) as f32, 0.0),
         };
         LookupUniform {
-            map_from_world: self.frustum.map_from_world,
-            plane_in_map_from_world: self.world_from_map.transpose().as_mat4(),
             light: self.light.as_vec4().to_array(),
-            texels: self.frustum.texels.as_vec2().to_array(),
-            texel_at_q1: self.frustum.texel_at_q1().as_vec2().to_array(),
-            metres_per_depth_terms: self.frustum.metres_per_depth_terms().map(|term| term as f32),
+            texels: self.texels().as_vec2().to_array(),
             kernel,
-            depth_sign: self.frustum.depth_sign() as f32,
+            seam: self.seam as u32,
+            border: self.border as u32,
             closed_form_kernel: self.bias.closed_form_kernel as f32,
-            raster_slack_texels: raster_slack_texels(self.frustum.texels.max_element()) as f32,
+            raster_slack_texels: raster_slack_texels(self.texels().max_element()) as f32,
             cap_texels: self.bias.cap_texels as f32,
             normal_texels: self.bias.normal_texels as f32,
             depth_m: self.bias.depth_m as f32,
             fixed_step,
             float_step,
-            padding: 0,
         }
     }
 }
@@ -251,14 +337,11 @@ impl Lookup {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(super) struct LookupUniform {
-    map_from_world: Mat4,
-    plane_in_map_from_world: Mat4,
     light: [f32; 4],
     texels: [f32; 2],
-    texel_at_q1: [f32; 2],
-    metres_per_depth_terms: [f32; 2],
     kernel: u32,
-    depth_sign: f32,
+    seam: u32,
+    border: u32,
     closed_form_kernel: f32,
     raster_slack_texels: f32,
     cap_texels: f32,
@@ -266,30 +349,27 @@ pub(super) struct LookupUniform {
     depth_m: f32,
     fixed_step: f32,
     float_step: f32,
-    padding: u32,
 }
 
 #[cfg(test)]
 mod tests {
     use super::LookupUniform;
     use crate::gpu::layout::{rust_layout, wgsl_layout};
+    use crate::technique::map::projection::GpuView;
     use crate::technique::map::shader_modules;
 
     #[test]
-    fn the_uniform_lies_as_the_shaders_read_it() {
+    fn the_uniforms_lie_as_the_shaders_read_them() {
         let lookups: Vec<_> =
             shader_modules().into_iter().filter(|(label, _)| label.starts_with("map lookup")).collect();
         assert!(!lookups.is_empty());
         for (label, files) in lookups {
             let in_rust = rust_layout!(LookupUniform {
-                map_from_world,
-                plane_in_map_from_world,
                 light,
                 texels,
-                texel_at_q1,
-                metres_per_depth_terms,
                 kernel,
-                depth_sign,
+                seam,
+                border,
                 closed_form_kernel,
                 raster_slack_texels,
                 cap_texels,
@@ -297,9 +377,11 @@ mod tests {
                 depth_m,
                 fixed_step,
                 float_step,
-                padding,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
+            let in_rust =
+                rust_layout!(GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, padding });
+            assert_eq!(wgsl_layout(&files, "View"), in_rust, "{label}");
         }
     }
 }

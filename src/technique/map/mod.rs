@@ -24,9 +24,9 @@ mod texel_footprint;
 
 pub use depth_format::DepthFormat;
 pub(in crate::technique) use exact_texels::ExactTexels;
-pub use lookup::{Lookup, Outside, Placed};
+pub use lookup::{Lookup, Outside, Placed, Tap};
 pub use passes::shader_modules;
-pub use settings::{Around, Fit, Settings};
+pub use settings::{Around, Border, CasterSides, Fit, NearMode, Seam, Settings};
 pub(in crate::technique) use texel_footprint::texel_footprint;
 
 use super::param::{Choice, Kind, Param, Value};
@@ -58,6 +58,10 @@ impl Technique for Map {
         let limit = gpu.limits().texture_side;
         if settings.size > limit {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
+            return Err(Unsupported::MissingFeature { what });
+        }
+        if settings.near_mode == NearMode::DepthClamp && !gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL) {
+            let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
             return Err(Unsupported::MissingFeature { what });
         }
         settings.projection.supports(scene, light, &settings)
@@ -187,6 +191,36 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "largest closed-form bias at grazing light",
         ),
     ];
+    params.extend([
+        param(
+            "near_mode",
+            "",
+            plain(&["extend", "depth-clamp", "fragment-clamp"]),
+            Value::Choice("extend", None),
+            "casters before the near plane: fit it before them, or draw them at it, by the device or by each fragment",
+        ),
+        param(
+            "caster_sides",
+            "",
+            plain(&["all", "light-facing", "away-facing"]),
+            Value::Choice("all", None),
+            "which sides of casters are drawn",
+        ),
+        param(
+            "seam",
+            "",
+            plain(&["per-tap", "clamp"]),
+            Value::Choice("per-tap", None),
+            "what a filter's tap beyond the side of its view reads: the view it falls in, or the nearest texel",
+        ),
+        param(
+            "border",
+            "",
+            plain(&["lit", "shadow", "clamp-edge"]),
+            Value::Choice("lit", None),
+            "what stands for the map beyond its border",
+        ),
+    ]);
     params.extend(fit_params());
     params
 });

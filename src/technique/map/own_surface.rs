@@ -6,43 +6,38 @@
 //! touch and that, as the light sees them, lie on the line between the two. How finely a surface is tessellated then
 //! makes no difference.
 
+use super::lookup::Tap;
 use super::prepared::PreparedMap;
-use super::{Lookup, Placed};
+use super::projection::View;
 use crate::receiver::Receiver;
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3};
 
 /// How far the way may run on beyond either end, texels: a surface that folds over turns back behind its outline.
 const OVERSHOOT_TEXELS: f64 = 0.5;
 /// Triangles a way may enter. A texel that covers more of a section is too coarse to speak of one surface.
 const LONGEST_WAY: usize = 1024;
 
-/// Whether the surface leads from the receiver to `triangle`, which `texel` holds.
-pub(super) fn is_own_surface(
-    map: &PreparedMap<'_>,
-    receiver: &Receiver,
-    placed: &Placed,
-    texel: IVec2,
-    triangle: u32,
-) -> bool {
+/// Whether the surface leads from the receiver to `triangle`, which `tap` reads.
+pub(super) fn is_own_surface(map: &PreparedMap<'_>, receiver: &Receiver, tap: &Tap, triangle: u32) -> bool {
     let job = &map.job;
     if job.casters.same_surface(triangle, receiver.triangle) || job.adjacency.shares_vertex(triangle, receiver.triangle)
     {
         return true;
     }
-    let (from, to) = (placed.position_in_texels, texel.as_dvec2() + 0.5);
+    let (from, to) = (tap.placed.position_in_texels, tap.texel.as_dvec2() + 0.5);
     let overshoot = OVERSHOOT_TEXELS * (to - from).normalize_or_zero();
     let line = [from - overshoot, to + overshoot];
     let is_on_the_way = |between: u32| {
-        in_texels(&map.lookup, job.scene.triangle_in_world(between)).is_some_and(|corners| meets(corners, line))
+        in_texels(&map.lookup.views[tap.placed.view], job.scene.triangle_in_world(between))
+            .is_some_and(|corners| meets(corners, line))
     };
     job.adjacency.leads(receiver.triangle, triangle, LONGEST_WAY, is_on_the_way)
 }
 
 /// A triangle in texel coordinates; `None` if a corner is behind the light.
-fn in_texels(lookup: &Lookup, corners: [DVec3; 3]) -> Option<[DVec2; 3]> {
-    let in_map = corners.map(|corner| lookup.frustum.project(corner));
-    let texels = lookup.frustum.texels.as_dvec2();
-    in_map.iter().all(|p| p.w > 0.0).then(|| in_map.map(|p| p.truncate().truncate() / p.w * texels))
+fn in_texels(view: &View, corners: [DVec3; 3]) -> Option<[DVec2; 3]> {
+    let in_map = corners.map(|corner| view.project(corner));
+    in_map.iter().all(|at| at.q > 0.0).then(|| in_map.map(|at| at.uv * view.texels.as_dvec2()))
 }
 
 /// Whether a triangle and a line between two points have a point in common: no axis separates them, neither a coordinate

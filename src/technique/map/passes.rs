@@ -1,45 +1,83 @@
-//! The GPU side of a map: draw it, look it up, read chosen texels back.
+//! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
 use super::lookup::Lookup;
-use super::{Settings, filter};
+use super::settings::{CasterSides, NearMode};
+use super::{DepthFormat, Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::gpu::{Geometry, Gpu, GpuError, PassRecord, Recorder};
-use crate::technique::receiver_buffer::{ReceiverBuffer, workgroups};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
+use crate::technique::receiver_buffer::{Chunk, ReceiverBuffer, workgroups};
+use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
+use projection::{GpuView, View};
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, BufferUsages, CompareFunction,
-    ComputePipeline, ComputePipelineDescriptor, DepthBiasState, DepthStencilState, Extent3d, LoadOp, Operations,
-    RenderPassDepthStencilAttachment, RenderPipeline, RenderPipelineDescriptor, StoreOp, Texture, TextureDescriptor,
-    TextureDimension, TextureUsages, TextureView, VertexState,
+    BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
+    DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
+    RenderPipeline, StoreOp, Texture, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
+const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const VIEW: Wgsl = wgsl!("map/view.wgsl");
+const HOMOGENEOUS: Wgsl = wgsl!("map/homogeneous.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
 const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
+/// The files of a lookup with one value of each axis.
+fn lookup_files(projection: &dyn projection::Projection, filter: &dyn filter::Filter) -> [Wgsl; 6] {
+    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, filter.shader()]
+}
+
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
 #[must_use]
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
-    let mut modules = vec![("map caster".to_owned(), vec![CASTER]), ("map gather".to_owned(), vec![GATHER])];
-    modules.extend(
-        filter::registry()
-            .iter()
-            .map(|f| (format!("map lookup {}", f.choice().name), vec![RECEIVER, LOOKUP, f.shader()])),
-    );
+    let mut modules = vec![
+        ("map caster".to_owned(), vec![CASTER]),
+        ("map caster depth".to_owned(), vec![CASTER_DEPTH]),
+        ("map gather".to_owned(), vec![GATHER]),
+    ];
+    for projection in projection::registry() {
+        for filter in filter::registry() {
+            let label = format!("map lookup {} {}", projection.name(), filter.choice().name);
+            modules.push((label, lookup_files(*projection, *filter).to_vec()));
+        }
+    }
     modules
+}
+
+/// `Caster` of `shaders/map/caster_depth.wgsl`, which begins as that of `shaders/map/caster.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct CasterUniform {
+    clip_from_world: Mat4,
+    depth_row: [f32; 4],
+    depth_q_row: [f32; 4],
+    bias_constant: f32,
+    bias_constant_ulps: f32,
+    bias_slope: f32,
+    bias_clamp: f32,
+    depth_sign: f32,
+    clamps: u32,
+    padding: [u32; 2],
 }
 
 /// Texture, pipelines and bindings of one map and its lookups.
 pub(super) struct MapPasses {
     map: Texture,
-    view: TextureView,
-    caster_pipeline: RenderPipeline,
-    caster_bindings: BindGroup,
+    layers: Vec<Layer>,
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
+    buffer_bytes: u64,
+}
+
+/// How one view is drawn.
+struct Layer {
+    target: TextureView,
+    pipeline: RenderPipeline,
+    bindings: BindGroup,
     clear_depth: f32,
-    uniform_bytes: u64,
+    /// Whether a fragment shader writes depth: its pipeline then declares one colour target, which is none.
+    writes_depth: bool,
 }
 
 impl MapPasses {
@@ -51,56 +89,34 @@ impl MapPasses {
         receivers: &ReceiverBuffer,
     ) -> Result<Self, GpuError> {
         gpu.scoped("the shadow map's set-up", || {
-            let map = gpu.device.create_texture(&TextureDescriptor {
-                label: Some("shadow map"),
-                size: Extent3d {
-                    width: lookup.frustum.texels.x,
-                    height: lookup.frustum.texels.y,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: TextureDimension::D2,
-                format: settings.format.texture_format(),
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
-            let view = map.create_view(&Default::default());
-            let uniform = |contents: &[u8]| {
-                let usage = BufferUsages::UNIFORM;
-                gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+            let format = settings.format.texture_format();
+            let layer_count = lookup.views.len() as u32;
+            let map = gpu.texture_array("shadow map", lookup.texels(), layer_count, format, usage);
+            let views: Vec<GpuView> = lookup.views.iter().map(View::gpu).collect();
+            let views = gpu.buffer("views", &views, BufferUsages::STORAGE);
+            let uniform = gpu.uniform("lookup", lookup.uniform(settings.kernel));
+            let lookup_pipeline =
+                gpu.compute_pipeline("map lookup", &lookup_files(settings.projection, settings.filter));
+            let all_layers = all_layers(&map);
+            let bind = |chunk: &Chunk| {
+                let resources = [
+                    chunk.receivers.as_entire_binding(),
+                    chunk.visibilities.as_entire_binding(),
+                    uniform.as_entire_binding(),
+                    BindingResource::TextureView(&all_layers),
+                    views.as_entire_binding(),
+                ];
+                gpu.bind(&lookup_pipeline.get_bind_group_layout(0), &resources)
             };
-            let light_uniform = uniform(bytemuck::bytes_of(&lookup.frustum.light_clip_from_world));
-            let lookup_uniform = uniform(bytemuck::bytes_of(&lookup.uniform(settings.kernel)));
-            let caster_pipeline = caster_pipeline(gpu, settings, lookup);
-            let caster_bindings = gpu.device.create_bind_group(&BindGroupDescriptor {
-                label: None,
-                layout: &caster_pipeline.get_bind_group_layout(0),
-                entries: &[BindGroupEntry { binding: 0, resource: light_uniform.as_entire_binding() }],
-            });
-            let lookup_pipeline = compute_pipeline(gpu, "map lookup", &[RECEIVER, LOOKUP, settings.filter.shader()]);
-            let lookup_bindings = receivers
-                .chunks()
-                .iter()
-                .map(|chunk| {
-                    let resources = [
-                        chunk.receivers.as_entire_binding(),
-                        chunk.visibilities.as_entire_binding(),
-                        lookup_uniform.as_entire_binding(),
-                        BindingResource::TextureView(&view),
-                    ];
-                    bind(gpu, &lookup_pipeline, resources)
-                })
-                .collect();
             Self {
-                uniform_bytes: light_uniform.size() + lookup_uniform.size(),
-                clear_depth: if settings.reversed { 0.0 } else { 1.0 },
+                buffer_bytes: views.size()
+                    + uniform.size()
+                    + u64::from(layer_count) * size_of::<CasterUniform>() as u64,
+                lookup_bindings: receivers.chunks().iter().map(bind).collect(),
+                layers: layers(gpu, settings, lookup, &map),
                 map,
-                view,
-                caster_pipeline,
-                caster_bindings,
                 lookup_pipeline,
-                lookup_bindings,
             }
         })
     }
@@ -114,16 +130,19 @@ impl MapPasses {
     ) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow map", || {
             let mut recorder = Recorder::new(gpu);
-            let depth = RenderPassDepthStencilAttachment {
-                view: &self.view,
-                depth_ops: Some(Operations { load: LoadOp::Clear(self.clear_depth), store: StoreOp::Store }),
-                stencil_ops: None,
-            };
-            recorder.render("map", &[], Some(depth), |pass| {
-                pass.set_pipeline(&self.caster_pipeline);
-                pass.set_bind_group(0, &self.caster_bindings, &[]);
-                geometry.draw_casters(pass);
-            });
+            for layer in &self.layers {
+                let depth = RenderPassDepthStencilAttachment {
+                    view: &layer.target,
+                    depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
+                    stencil_ops: None,
+                };
+                let no_color = if layer.writes_depth { &[None][..] } else { &[] };
+                recorder.render("map", no_color, Some(depth), |pass| {
+                    pass.set_pipeline(&layer.pipeline);
+                    pass.set_bind_group(0, &layer.bindings, &[]);
+                    geometry.draw_casters(pass);
+                });
+            }
             recorder.compute("lookup", |pass| {
                 pass.set_pipeline(&self.lookup_pipeline);
                 for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
@@ -136,24 +155,25 @@ impl MapPasses {
         recorder.finish("the shadow map")
     }
 
-    /// The stored depths of some texels (indices row by row), as the GPU holds them.
-    pub(super) fn gather(&self, gpu: &Gpu, texels: &[u32]) -> Result<Vec<f64>, GpuError> {
+    /// The stored depths of some texels, by index, as the GPU holds them.
+    pub(super) fn gather(&self, gpu: &Gpu, lookup: &Lookup, texels: &[u32]) -> Result<Vec<f64>, GpuError> {
         if texels.is_empty() {
             return Ok(Vec::new());
         }
-        let width = self.map.width();
-        let positions: Vec<[u32; 2]> = texels.iter().map(|texel| [texel % width, texel / width]).collect();
+        let position = |index: &u32| {
+            let (layer, texel) = lookup.texel_of(*index);
+            [texel.x, texel.y, layer as u32, 0]
+        };
+        let positions: Vec<[u32; 4]> = texels.iter().map(position).collect();
         let depths: Buffer = gpu.scoped("gathering texels", || {
-            let buffer = |contents: &[u8]| {
-                let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-                gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
-            };
-            let input = buffer(bytemuck::cast_slice(&positions));
-            let output = buffer(bytemuck::cast_slice(&vec![0.0_f32; texels.len()]));
-            let pipeline = compute_pipeline(gpu, "map gather", &[GATHER]);
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            let input = gpu.buffer("texels", &positions, usage);
+            let output = gpu.buffer("depths", &vec![0.0_f32; texels.len()], usage);
+            let pipeline = gpu.compute_pipeline("map gather", &[GATHER]);
+            let all_layers = all_layers(&self.map);
             let resources =
-                [input.as_entire_binding(), output.as_entire_binding(), BindingResource::TextureView(&self.view)];
-            let bindings = bind(gpu, &pipeline, resources);
+                [input.as_entire_binding(), output.as_entire_binding(), BindingResource::TextureView(&all_layers)];
+            let bindings = gpu.bind(&pipeline.get_bind_group_layout(0), &resources);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&pipeline);
@@ -168,58 +188,115 @@ impl MapPasses {
         Ok(values.into_iter().map(f64::from).collect())
     }
 
-    /// Bytes of the map and its uniforms.
+    /// Bytes of the map and its buffers.
     pub(super) fn bytes(&self, settings: &Settings) -> u64 {
-        let texels = u64::from(self.map.width()) * u64::from(self.map.height());
-        texels * settings.format.bytes() + self.uniform_bytes
+        let texels = u64::from(self.map.width()) * u64::from(self.map.height()) * self.layers.len() as u64;
+        texels * settings.format.bytes() + self.buffer_bytes
     }
 }
 
-fn bind<const N: usize>(gpu: &Gpu, pipeline: &ComputePipeline, resources: [BindingResource<'_>; N]) -> BindGroup {
-    let mut binding = 0..;
-    let entries = resources.map(|resource| BindGroupEntry { binding: binding.next().unwrap_or_default(), resource });
-    let layout = &pipeline.get_bind_group_layout(0);
-    gpu.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+fn all_layers(map: &Texture) -> TextureView {
+    let dimension = Some(TextureViewDimension::D2Array);
+    map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-fn compute_pipeline(gpu: &Gpu, label: &str, files: &[Wgsl]) -> ComputePipeline {
-    gpu.device.create_compute_pipeline(&ComputePipelineDescriptor {
-        label: Some(label),
-        layout: None,
-        module: &gpu.shader(label, files),
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    })
+fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
+    let mut pipelines: Vec<(Raster, RenderPipeline)> = Vec::new();
+    let layer = |(index, view): (u32, &View)| {
+        let raster = Raster::of(settings, lookup, view);
+        let known = pipelines.iter().find(|(known, _)| *known == raster).map(|(_, pipeline)| pipeline.clone());
+        let pipeline = known.unwrap_or_else(|| {
+            let built = raster.pipeline(gpu, settings, lookup);
+            pipelines.push((raster, built.clone()));
+            built
+        });
+        let uniform = gpu.uniform("caster", caster_uniform(settings, lookup, view));
+        Layer {
+            target: map.create_view(&TextureViewDescriptor {
+                dimension: Some(TextureViewDimension::D2),
+                base_array_layer: index,
+                array_layer_count: Some(1),
+                ..Default::default()
+            }),
+            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()]),
+            pipeline,
+            clear_depth: view.cleared() as f32,
+            writes_depth: raster.writes_depth,
+        }
+    };
+    (0..).zip(&lookup.views).map(layer).collect()
 }
 
-fn caster_pipeline(gpu: &Gpu, settings: &Settings, lookup: &Lookup) -> RenderPipeline {
-    let module = gpu.shader("map caster", &[CASTER]);
-    let sign = lookup.frustum.depth_sign();
-    gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("map caster"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(crate::gpu::CORNER_LAYOUT)],
-        },
-        primitive: Default::default(),
-        depth_stencil: Some(DepthStencilState {
-            format: settings.format.texture_format(),
-            depth_write_enabled: Some(true),
-            depth_compare: Some(if settings.reversed { CompareFunction::Greater } else { CompareFunction::Less }),
-            stencil: Default::default(),
-            bias: DepthBiasState {
-                constant: lookup.bias.constant_units * sign as i32,
-                slope_scale: (lookup.bias.slope * sign) as f32,
-                clamp: (lookup.bias.clamp * sign) as f32,
+fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUniform {
+    let fixed_unit = match settings.format {
+        DepthFormat::Depth32Float => 0.0,
+        fixed => fixed.hardware_unit(1.0),
+    };
+    let units = f64::from(lookup.bias.constant_units);
+    CasterUniform {
+        clip_from_world: view.clip_from_world,
+        depth_row: view.rows.depth.to_array(),
+        depth_q_row: view.rows.depth_q.to_array(),
+        bias_constant: (units * fixed_unit) as f32,
+        bias_constant_ulps: if fixed_unit == 0.0 { units as f32 } else { 0.0 },
+        bias_slope: lookup.bias.slope as f32,
+        bias_clamp: lookup.bias.clamp as f32,
+        depth_sign: view.depth_sign as f32,
+        clamps: u32::from(settings.near_mode != NearMode::Extend),
+        padding: [0; 2],
+    }
+}
+
+/// What a view's pipeline depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Raster {
+    depth_sign: f64,
+    winding: f64,
+    /// Whether the fragment shader writes depth, because the rasteriser's is not what is stored.
+    writes_depth: bool,
+}
+
+impl Raster {
+    fn of(settings: &Settings, lookup: &Lookup, view: &View) -> Self {
+        Self {
+            depth_sign: view.depth_sign,
+            winding: view.winding(lookup.light()),
+            writes_depth: settings.near_mode == NearMode::FragmentClamp || view.rows.depth_q != view.rows.q,
+        }
+    }
+
+    fn pipeline(&self, gpu: &Gpu, settings: &Settings, lookup: &Lookup) -> RenderPipeline {
+        let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
+        gpu.render_pipeline(&Drawing {
+            label: "map caster",
+            files: if self.writes_depth { &[CASTER_DEPTH] } else { &[CASTER] },
+            vertices: &[Some(CORNER_LAYOUT)],
+            primitive: PrimitiveState {
+                front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },
+                cull_mode: match settings.caster_sides {
+                    CasterSides::All => None,
+                    CasterSides::LightFacing => Some(Face::Back),
+                    CasterSides::AwayFacing => Some(Face::Front),
+                },
+                unclipped_depth: settings.near_mode == NearMode::DepthClamp && !self.writes_depth,
+                ..PrimitiveState::default()
             },
-        }),
-        multisample: Default::default(),
-        fragment: None,
-        multiview_mask: None,
-        cache: None,
-    })
+            depth_stencil: Some(DepthStencilState {
+                format: settings.format.texture_format(),
+                depth_write_enabled: Some(true),
+                depth_compare: Some(if self.depth_sign > 0.0 {
+                    CompareFunction::Less
+                } else {
+                    CompareFunction::Greater
+                }),
+                stencil: Default::default(),
+                bias: DepthBiasState {
+                    constant: bias(lookup.bias.constant_units.into()) as i32,
+                    slope_scale: bias(lookup.bias.slope) as f32,
+                    clamp: bias(lookup.bias.clamp) as f32,
+                },
+            }),
+            targets: if self.writes_depth { &[None] } else { &[] },
+        })
+    }
 }

@@ -8,7 +8,7 @@ use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3, UVec2};
 
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
@@ -23,8 +23,8 @@ impl<'j> PreparedMap<'j> {
     pub(super) fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let frustum = settings.projection.fit(job.scene, job.light, &settings, &visible)?;
-        let lookup = Lookup::new(frustum, &settings, job.light);
+        let views = settings.projection.fit(job.scene, job.light, &settings, &visible)?;
+        let lookup = Lookup::new(views, &settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = MapPasses::new(job.gpu, &settings, &lookup, &receivers)?;
         let scene_radius_m = job.scene.bounds().radius();
@@ -38,12 +38,13 @@ impl<'j> PreparedMap<'j> {
     /// What the bias does at a placed receiver, and what it should do.
     pub(super) fn bias_at(&self, receiver: &Receiver, placed: &Placed) -> BiasAt {
         let lookup = &self.lookup;
-        let metres_per_depth = lookup.frustum.metres_per_depth(placed.q);
-        let by_rasteriser = lookup.hardware_bias(self.job.scene.triangle_in_world(receiver.triangle)).abs();
+        let site = lookup.views[placed.view].site(placed.point_in_world);
+        let metres_per_depth = site.metres_per_depth();
+        let corners = self.job.scene.triangle_in_world(receiver.triangle);
+        let by_rasteriser = lookup.hardware_bias(placed.view, corners).abs();
         let effective_m = ((placed.depth - placed.reference).abs() + by_rasteriser) * metres_per_depth;
         let kernel = self.settings.filter.bias_kernel(self.settings.kernel);
-        let at = (placed.q, placed.depth);
-        let acne_free = lookup.closed_form(placed.point_in_world, receiver.normal_in_world, at, kernel);
+        let acne_free = lookup.closed_form(&site, receiver.normal_in_world, DVec2::splat(kernel));
         let light = self.job.light.homogeneous();
         let to_light = (light.truncate() - receiver.point_in_world * light.w).normalize_or_zero();
         let sine_of_elevation = receiver.normal_in_world.dot(to_light);
@@ -51,7 +52,7 @@ impl<'j> PreparedMap<'j> {
             effective_m,
             acne_free_m: acne_free * metres_per_depth,
             contact_gap_m: effective_m * (1.0 - sine_of_elevation * sine_of_elevation).max(0.0).sqrt(),
-            texel_m: lookup.frustum.texel_m(placed.q).max_element(),
+            texel_m: site.texel_m().max_element(),
         }
     }
 }
@@ -67,30 +68,28 @@ impl Prepared for PreparedMap<'_> {
     }
 
     fn facts(&self) -> Vec<(String, String)> {
-        let frustum = &self.lookup.frustum;
-        let size = frustum.window.max - frustum.window.min;
         let asked = self.job.classes.iter().zip(&self.job.receivers.pixels);
         let receivers = asked.filter(|(class, _)| **class == PixelClass::Asked).filter_map(|(_, pixel)| *pixel);
         let biases: Vec<BiasAt> = receivers
             .filter_map(|receiver| {
-                let placed = self.lookup.place(receiver.point_in_world, receiver.normal_in_world).ok()?;
+                let view = self.lookup.select(receiver.point_in_world).first;
+                let placed = self.lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()?;
                 Some(self.bias_at(&receiver, &placed))
             })
             .collect();
-        let window = match frustum.shape {
-            super::projection::Shape::Parallel => format!("{:.4} m x {:.4} m", size.x, size.y),
-            super::projection::Shape::Perspective => {
-                let angles = [size.x, size.y].map(|tangents| 2.0 * (0.5 * tangents).atan().to_degrees());
-                format!("{:.2} x {:.2} degrees", angles[0], angles[1])
-            }
+        let mut facts: Vec<(String, String)> = match self.lookup.views.as_slice() {
+            [view] => vec![
+                ("light window".to_owned(), view.window.clone()),
+                ("light near, far".to_owned(), view.near_far.clone()),
+            ],
+            views => views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect(),
         };
-        vec![
-            ("light window".to_owned(), window),
-            ("light near, far".to_owned(), format!("{:.6} m, {:.6} m", frustum.near_m, frustum.far_m)),
+        facts.extend([
             ("effective bias".to_owned(), spread(&biases, |bias| bias.effective_m)),
             ("acne-free bias".to_owned(), spread(&biases, |bias| bias.acne_free_m)),
             ("contact gap".to_owned(), spread(&biases, |bias| bias.contact_gap_m)),
-        ]
+        ]);
+        facts
     }
 
     fn replay(&self, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
@@ -103,21 +102,22 @@ impl Prepared for PreparedMap<'_> {
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {
         let receiver = self.receiver(pixel)?;
-        let (_, _, q) = self.lookup.project(receiver.point_in_world).ok()?;
-        texel_footprint(&self.job, &self.lookup.frustum, &receiver, q)
+        let site = self.lookup.project(receiver.point_in_world).ok()?;
+        texel_footprint(&self.job, &site, &receiver)
     }
 
     fn light_frusta(&self) -> Vec<DMat4> {
-        vec![self.lookup.frustum.light_clip_from_world.as_dmat4()]
+        self.lookup.views.iter().map(|view| view.clip_from_world.as_dmat4()).collect()
     }
 
     fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
-        let texels = self.lookup.frustum.texels;
-        let indices: Vec<u32> = (0..texels.element_product()).collect();
-        let depths = self.passes.gather(self.job.gpu, &indices)?;
+        // Views below each other.
+        let size = self.lookup.texels() * UVec2::new(1, self.lookup.views.len() as u32);
+        let indices: Vec<u32> = (0..size.element_product()).collect();
+        let depths = self.passes.gather(self.job.gpu, &self.lookup, &indices)?;
         // Cleared texels are exactly at one end of the range.
         let drawn = |depth: f64| (depth > 0.0 && depth < 1.0).then_some(depth);
-        Ok(Some(LightDepths { size: texels, depths: depths.into_iter().map(drawn).collect() }))
+        Ok(Some(LightDepths { size, depths: depths.into_iter().map(drawn).collect() }))
     }
 }
 

@@ -3,7 +3,7 @@
 //! peter-panning that cancel.
 
 use super::exact_texels::{ExactTexel, ExactTexels};
-use super::lookup::{Lookup, Outside, Placed};
+use super::lookup::{Lookup, Outside, Placed, Tap};
 use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
 use crate::cast::Hit;
@@ -12,7 +12,7 @@ use crate::mask::Mask;
 use crate::receiver::Receiver;
 use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
-use glam::{DVec3, IVec2};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Up to here a filtered answer counts as shadow.
@@ -25,10 +25,8 @@ struct Step {
     cause: Cause,
 }
 
-impl Step {
-    /// Outside the map everything is lit, and `coverage` has said why.
-    const OUTSIDE: Self = Self { value: 1.0, cause: Cause::ClippingFrustum };
-}
+/// The stages of one view, up to its stored texels.
+type Chain = [Step; STAGES.len() - 1];
 
 /// Something between a receiver and the light.
 #[derive(Debug, Clone, Copy)]
@@ -71,17 +69,22 @@ impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
         let texels_of = |pixel: &u32| {
-            let receiver = map.receiver(*pixel);
             let mut indices = Vec::new();
-            for placed in [&map.lookup, &unbiased].into_iter().filter_map(|lookup| place(lookup, &receiver?).ok()) {
-                indices.extend(map.lookup.texel_index(placed.own_texel()));
-                each_tap(map, &placed, &mut |texel, _| indices.extend(map.lookup.texel_index(texel)));
+            let Some(receiver) = map.receiver(*pixel) else { return indices };
+            for (view, _) in map.lookup.select(receiver.point_in_world).iter() {
+                for placed in [&map.lookup, &unbiased].into_iter().filter_map(|lookup| place(lookup, view, &receiver)) {
+                    let mut read = |tap: Option<Tap>| {
+                        indices.extend(tap.and_then(|tap| map.lookup.texel_index(tap.placed.view, tap.texel)));
+                    };
+                    read(map.lookup.tap(&placed, receiver.normal_in_world, placed.own_texel()));
+                    each_tap(map, &receiver, &placed, &mut |tap, _| read(tap));
+                }
             }
             indices
         };
         let indices = pixels.par_iter().flat_map_iter(texels_of).collect();
         let texels = ExactTexels::cast(map.job.scene, map.job.casters, &map.lookup, indices);
-        let stored = map.passes.gather(map.job.gpu, &texels.indices)?;
+        let stored = map.passes.gather(map.job.gpu, &map.lookup, &texels.indices)?;
         Ok(Self { map, unbiased, texels, stored })
     }
 
@@ -91,19 +94,48 @@ impl<'r> Replayer<'r> {
         let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
         let hits = self.blockers(&receiver, receiver.point_in_world);
         let exact = visibility(hits.is_empty());
-        let coverage = self.coverage(&receiver, &hits);
-        let placed = place(&self.map.lookup, &receiver).ok();
-        let [bias, sampling, filter] = placed.map_or([Step::OUTSIDE; 3], |placed| {
-            let biased = self.biased(&receiver, &placed);
-            // Only a blocker that the bias took away asks for the reason.
-            let is_lost = biased > coverage.value;
-            let cause = if is_lost { self.cause_of_loss(pixel, &receiver) } else { Cause::PeterPanning };
-            let sampling = self.sampling(pixel, &receiver, &placed);
-            [Step { value: biased, cause }, sampling, self.filter(&receiver, &placed, sampling.value)]
-        });
-        let precision = |value: f64| Step { value, cause: Cause::Precision };
-        let stored_texels = precision(placed.map_or(1.0, |placed| self.by_stored_texels(&placed)));
-        Some((exact, [coverage, bias, sampling, filter, stored_texels, precision(answered)]))
+        let shares = self.map.lookup.select(receiver.point_in_world);
+        let in_views: Vec<(f64, Chain)> =
+            shares.iter().map(|(view, weight)| (weight, self.chain(pixel, &receiver, &hits, view))).collect();
+        let [coverage, bias, sampling, filter, stored_texels] = blended(exact, &in_views);
+        let gpu = Step { value: answered, cause: Cause::Precision };
+        Some((exact, [coverage, bias, sampling, filter, stored_texels, gpu]))
+    }
+
+    /// What each stage before the GPU's makes of a receiver in one view.
+    fn chain(&self, pixel: u32, receiver: &Receiver, hits: &[Blocker], view: usize) -> Chain {
+        let placed = place(&self.map.lookup, view, receiver);
+        if let Err(outside) = self.map.lookup.project_in(view, receiver.point_in_world) {
+            return self.beyond_the_border(receiver, outside, placed);
+        }
+        let coverage = self.coverage(view, hits);
+        let Some(placed) = placed else {
+            // Moved out along its normal.
+            let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
+            return [coverage, border, border, border, Step { cause: Cause::Precision, ..border }];
+        };
+        let biased = self.biased(receiver, &placed);
+        // Only a blocker that the bias took away asks for the reason.
+        let is_lost = biased > coverage.value;
+        let cause = if is_lost { self.cause_of_loss(pixel, receiver, view) } else { Cause::PeterPanning };
+        let sampling = self.sampling(pixel, receiver, &placed);
+        let filter = self.filter(receiver, &placed, sampling.value);
+        let stored_texels = Step { value: self.by_stored_texels(receiver, &placed), cause: Cause::Precision };
+        [coverage, Step { value: biased, cause }, sampling, filter, stored_texels]
+    }
+
+    /// Outside the view all of the error is the border's: it answers by itself, or its texels stretch outwards.
+    fn beyond_the_border(&self, receiver: &Receiver, outside: Outside, stretched: Option<Placed>) -> Chain {
+        let cause = match outside {
+            Outside::Near => Cause::ClippingNear,
+            Outside::Far => Cause::ClippingFar,
+            Outside::Frustum => Cause::ClippingFrustum,
+        };
+        let border = self.map.lookup.border_visibility();
+        let exact = stretched.map_or(border, |placed| self.filter(receiver, &placed, border).value);
+        let stored = stretched.map_or(border, |placed| self.by_stored_texels(receiver, &placed));
+        let clipped = Step { value: exact, cause };
+        [clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -119,26 +151,26 @@ impl<'r> Replayer<'r> {
         hits.iter().map(blocker).collect()
     }
 
-    /// What the light's frustum can see: a receiver outside is lit, a blocker before the near plane is not there.
-    fn coverage(&self, receiver: &Receiver, hits: &[Blocker]) -> Step {
-        match self.map.lookup.project(receiver.point_in_world) {
-            Err(Outside::Frustum) => Step { value: 1.0, cause: Cause::ClippingFrustum },
-            Err(Outside::Near) => Step { value: 1.0, cause: Cause::ClippingNear },
-            Err(Outside::Far) => Step { value: 1.0, cause: Cause::ClippingFar },
-            Ok(_) => {
-                let is_seen = |hit: &Blocker| self.map.lookup.project(hit.point_in_world).is_ok();
-                Step { value: visibility(!hits.iter().any(is_seen)), cause: Cause::ClippingNear }
-            }
-        }
+    /// What the view can see: a blocker before the near plane, or of a side that is not drawn, is not there.
+    fn coverage(&self, view: usize, hits: &[Blocker]) -> Step {
+        let lookup = &self.map.lookup;
+        let draws_side = |hit: &Blocker| lookup.draws_side(self.map.job.scene, hit.triangle);
+        let is_drawn = |hit: &Blocker| lookup.drawn_depth(view, hit.point_in_world).is_some();
+        let is_blocked = hits.iter().any(|hit| is_drawn(hit) && draws_side(hit));
+        let by_sides = !is_blocked && hits.iter().any(is_drawn);
+        let cause = if by_sides { Cause::TechniqueModel } else { Cause::ClippingNear };
+        Step { value: visibility(!is_blocked), cause }
     }
 
     /// The exact ray with the bias: blockers that the comparison cannot tell from the receiver are not there.
     fn biased(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
+        let scene = self.map.job.scene;
         let blocks = |hit: &Blocker| {
-            lookup.project(hit.point_in_world).is_ok_and(|(_, depth, _)| {
-                let by_rasteriser = lookup.hardware_bias(self.map.job.scene.triangle_in_world(hit.triangle));
-                !lookup.is_lit(placed.reference, depth + by_rasteriser)
+            let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
+            drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {
+                let by_rasteriser = lookup.hardware_bias(placed.view, scene.triangle_in_world(hit.triangle));
+                !lookup.is_lit(placed.view, placed.reference, depth + by_rasteriser)
             })
         };
         visibility(!self.blockers(receiver, placed.point_in_world).iter().any(blocks))
@@ -146,19 +178,23 @@ impl<'r> Replayer<'r> {
 
     /// Why the blocker is lost that the bias reaches over: the bias, if the map would show it without any; if not, the
     /// texels, which are too coarse for it either way.
-    fn cause_of_loss(&self, pixel: u32, receiver: &Receiver) -> Cause {
-        let Ok(placed) = place(&self.unbiased, receiver) else { return Cause::PeterPanning };
+    fn cause_of_loss(&self, pixel: u32, receiver: &Receiver, view: usize) -> Cause {
+        let Some(placed) = place(&self.unbiased, view, receiver) else { return Cause::PeterPanning };
         let mut value = 0.0;
-        each_tap(self.map, &placed, &mut |texel, weight| {
-            let is_lit = |found: ExactTexel| self.unbiased.is_lit(placed.reference, found.unbiased_depth);
-            value += weight * visibility(self.exact(texel).is_none_or(is_lit));
+        self.map.settings.filter.taps(self.map.settings.kernel, placed.position_in_texels, &mut |texel, weight| {
+            let tap = self.unbiased.tap(&placed, receiver.normal_in_world, texel);
+            let lit = tap.and_then(|tap| Some((tap, self.exact(&tap)?))).map(|(tap, found)| {
+                visibility(self.unbiased.is_lit(tap.placed.view, tap.placed.reference, found.unbiased_depth))
+            });
+            value += weight * lit.unwrap_or(self.unbiased.border_visibility());
         });
         if value <= HALF_LIT { Cause::PeterPanning } else { aliasing_cause(self.map.footprint(pixel).as_ref()) }
     }
 
     /// The answer of the receiver's own texel with exact depth.
     fn sampling(&self, pixel: u32, receiver: &Receiver, placed: &Placed) -> Step {
-        let (value, own) = self.compare(receiver, placed, placed.own_texel());
+        let own_texel = self.map.lookup.tap(placed, receiver.normal_in_world, placed.own_texel());
+        let (value, own) = self.compare(receiver, own_texel.as_ref());
         Step { value, cause: own.unwrap_or_else(|| aliasing_cause(self.map.footprint(pixel).as_ref())) }
     }
 
@@ -167,8 +203,8 @@ impl<'r> Replayer<'r> {
     fn filter(&self, receiver: &Receiver, placed: &Placed, sampled: f64) -> Step {
         let (mut value, mut self_shadow, mut other) = (0.0, 0.0, 0.0);
         let mut self_cause = Cause::Acne;
-        each_tap(self.map, placed, &mut |texel, weight| {
-            let (lit, own) = self.compare(receiver, placed, texel);
+        each_tap(self.map, receiver, placed, &mut |tap, weight| {
+            let (lit, own) = self.compare(receiver, tap.as_ref());
             value += weight * lit;
             match own {
                 Some(cause) => {
@@ -183,67 +219,101 @@ impl<'r> Replayer<'r> {
     }
 
     /// The filter's answer with the depths that the GPU holds.
-    fn by_stored_texels(&self, placed: &Placed) -> f64 {
+    fn by_stored_texels(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let mut value = 0.0;
-        each_tap(self.map, placed, &mut |texel, weight| {
-            let is_lit = self.stored(texel).is_none_or(|depth| lookup.is_lit(placed.reference, depth));
-            value += weight * visibility(is_lit);
+        each_tap(self.map, receiver, placed, &mut |tap, weight| {
+            let lit = tap
+                .and_then(|tap| Some((tap, self.stored(&tap)?)))
+                .map(|(tap, depth)| visibility(lookup.is_lit(tap.placed.view, tap.placed.reference, depth)));
+            value += weight * lit.unwrap_or(lookup.border_visibility());
         });
         value
     }
 
     /// What one texel answers with exact depth; where that is dark and it holds the receiver's own surface, why.
-    fn compare(&self, receiver: &Receiver, placed: &Placed, texel: IVec2) -> (f64, Option<Cause>) {
-        match self.exact(texel) {
-            Some(found) if !self.map.lookup.is_lit(placed.reference, found.depth) => {
-                (0.0, self.self_shadowing(receiver, placed, texel, found))
+    fn compare(&self, receiver: &Receiver, tap: Option<&Tap>) -> (f64, Option<Cause>) {
+        let lookup = &self.map.lookup;
+        match tap.and_then(|tap| Some((tap, self.exact(tap)?))) {
+            Some((tap, found)) if !lookup.is_lit(tap.placed.view, tap.placed.reference, found.depth) => {
+                (0.0, self.self_shadowing(receiver, tap, found))
             }
-            _ => (1.0, None),
+            Some(_) => (1.0, None),
+            None => (lookup.border_visibility(), None),
         }
     }
 
     /// `acne` or `curvature` where a texel holds the receiver's own surface, by whether the bias that the receiver's
     /// slope needs would clear it; `None` where it holds another surface or nothing.
-    fn self_shadowing(&self, receiver: &Receiver, placed: &Placed, texel: IVec2, found: ExactTexel) -> Option<Cause> {
+    fn self_shadowing(&self, receiver: &Receiver, tap: &Tap, found: ExactTexel) -> Option<Cause> {
         let map = self.map;
         let triangle = found.triangle?;
-        if !is_own_surface(map, receiver, placed, texel, triangle) {
+        if !is_own_surface(map, receiver, tap, triangle) {
             return None;
         }
         if map.job.casters.same_surface(triangle, receiver.triangle) {
             return Some(Cause::Acne);
         }
-        let kernel = map.settings.filter.bias_kernel(map.settings.kernel);
-        let at = (placed.q, placed.depth);
-        let sufficient = map.lookup.sufficient_bias(placed.point_in_world, receiver.normal_in_world, at, kernel);
+        let placed = &tap.placed;
+        let kernel = DVec2::splat(map.settings.filter.bias_kernel(map.settings.kernel));
+        // For the kernel or, across a seam, for as far as the texel is.
+        let reach = (tap.texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(kernel);
+        let site = map.lookup.views[placed.view].site(placed.point_in_world);
+        let sufficient = map.lookup.sufficient_bias(&site, receiver.normal_in_world, reach);
         // In place of the bias there is, not on top of it.
-        let reference = placed.depth - map.lookup.frustum.depth_sign() * sufficient;
-        let is_cleared = map.lookup.is_lit(reference, found.unbiased_depth);
+        let reference = placed.depth - site.view.depth_sign * sufficient;
+        let is_cleared = map.lookup.is_lit(placed.view, reference, found.unbiased_depth);
         Some(if is_cleared { Cause::Acne } else { Cause::Curvature })
     }
 
-    fn rank(&self, texel: IVec2) -> Option<usize> {
-        self.map.lookup.texel_index(texel).and_then(|index| self.texels.rank(index))
+    fn rank(&self, tap: &Tap) -> Option<usize> {
+        self.map.lookup.texel_index(tap.placed.view, tap.texel).and_then(|index| self.texels.rank(index))
     }
 
-    /// What an ideal map holds in a texel that a lookup reads; `None` outside the map.
-    pub(super) fn exact(&self, texel: IVec2) -> Option<ExactTexel> {
-        self.rank(texel).map(|rank| self.texels.at(rank))
+    /// What an ideal map holds in a texel that a lookup reads.
+    pub(super) fn exact(&self, tap: &Tap) -> Option<ExactTexel> {
+        self.rank(tap).map(|rank| self.texels.at(rank))
     }
 
     /// What the GPU's map holds there.
-    pub(super) fn stored(&self, texel: IVec2) -> Option<f64> {
-        self.rank(texel).map(|rank| self.stored[rank])
+    pub(super) fn stored(&self, tap: &Tap) -> Option<f64> {
+        self.rank(tap).map(|rank| self.stored[rank])
     }
 }
 
-pub(super) fn place(lookup: &Lookup, receiver: &Receiver) -> Result<Placed, Outside> {
-    lookup.place(receiver.point_in_world, receiver.normal_in_world)
+/// The stages of one or two views together, by weight; a stage's cause is that of the view in which it moves the value
+/// most.
+fn blended(exact: f64, in_views: &[(f64, Chain)]) -> Chain {
+    let mut before: Vec<f64> = vec![exact; in_views.len()];
+    std::array::from_fn(|stage| {
+        let (mut value, mut most, mut cause) = (0.0, -1.0, Cause::Precision);
+        for ((weight, chain), before) in in_views.iter().zip(&mut before) {
+            let step = chain[stage];
+            value += weight * step.value;
+            let moved = weight * (step.value - *before).abs();
+            if moved > most {
+                (most, cause) = (moved, step.cause);
+            }
+            *before = step.value;
+        }
+        Step { value, cause }
+    })
 }
 
-pub(super) fn each_tap(map: &PreparedMap<'_>, placed: &Placed, tap: &mut dyn FnMut(IVec2, f64)) {
-    map.settings.filter.taps(map.settings.kernel, placed.position_in_texels, tap);
+pub(super) fn place(lookup: &Lookup, view: usize, receiver: &Receiver) -> Option<Placed> {
+    lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()
+}
+
+/// Calls `tap` with what each of the filter's taps reads (`None` outside the map) and its weight.
+pub(super) fn each_tap(
+    map: &PreparedMap<'_>,
+    receiver: &Receiver,
+    placed: &Placed,
+    tap: &mut dyn FnMut(Option<Tap>, f64),
+) {
+    map.settings.filter.taps(map.settings.kernel, placed.position_in_texels, &mut |texel, weight| {
+        tap(map.lookup.tap(placed, receiver.normal_in_world, texel), weight);
+    });
 }
 
 fn visibility(is_lit: bool) -> f64 {

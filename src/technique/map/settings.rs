@@ -24,6 +24,56 @@ pub struct Settings {
     pub bias_numbers: bias::Numbers,
     /// How the frustum is fitted.
     pub fit: Fit,
+    /// What happens to casters before the near plane.
+    pub near_mode: NearMode,
+    /// Which sides of casters are drawn.
+    pub caster_sides: CasterSides,
+    /// What taps beyond the side of their view read.
+    pub seam: Seam,
+    /// What stands for the map beyond its border.
+    pub border: Border,
+}
+
+/// What happens to casters before the near plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NearMode {
+    /// The near plane is fitted before them; those before a typed one are cut away.
+    Extend,
+    /// They are drawn at the near plane, which is fitted to the receivers.
+    DepthClamp,
+    /// The same, but fragments clamp their depth: for devices that cannot.
+    FragmentClamp,
+}
+
+/// Which sides of casters are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CasterSides {
+    /// Both.
+    All,
+    /// Those that the light reaches.
+    LightFacing,
+    /// Back faces: no acne on what the light reaches.
+    AwayFacing,
+}
+
+/// What taps beyond the side of their view read; the numbers are the shader's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seam {
+    /// The texel of the view they fall in.
+    PerTap = 0,
+    /// The nearest texel of their own view.
+    Clamp = 1,
+}
+
+/// What stands for the map beyond its border; the numbers are the shader's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Border {
+    /// Light.
+    Lit = 0,
+    /// Shadow.
+    Shadow = 1,
+    /// The nearest texel.
+    ClampEdge = 2,
 }
 
 /// How the light frustum is fitted; `None` is `auto`.
@@ -105,6 +155,22 @@ impl Settings {
                 cap_texels: spec.real("bias_cap_texels"),
             },
             fit: Fit::of(spec),
+            near_mode: match spec.choice("near_mode").0 {
+                "depth-clamp" => NearMode::DepthClamp,
+                "fragment-clamp" => NearMode::FragmentClamp,
+                _ => NearMode::Extend,
+            },
+            caster_sides: match spec.choice("caster_sides").0 {
+                "light-facing" => CasterSides::LightFacing,
+                "away-facing" => CasterSides::AwayFacing,
+                _ => CasterSides::All,
+            },
+            seam: if spec.choice("seam").0 == "clamp" { Seam::Clamp } else { Seam::PerTap },
+            border: match spec.choice("border").0 {
+                "shadow" => Border::Shadow,
+                "clamp-edge" => Border::ClampEdge,
+                _ => Border::Lit,
+            },
         }
     }
 

@@ -63,7 +63,8 @@ impl PicturePasses {
     ) -> Result<Self, GpuError> {
         let gpu = job.gpu;
         gpu.scoped("the projective texture's set-up", || {
-            let texels = lookup.frustum.texels;
+            let view = &lookup.views[0];
+            let texels = view.texels;
             let picture = gpu.device.create_texture(&TextureDescriptor {
                 label: Some("projective texture"),
                 size: Extent3d { width: texels.x, height: texels.y, depth_or_array_layers: 1 },
@@ -78,9 +79,9 @@ impl PicturePasses {
             let buffer = |contents: &[u8], usage: BufferUsages| {
                 gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage })
             };
-            let light = buffer(bytemuck::bytes_of(&lookup.frustum.light_clip_from_world), BufferUsages::UNIFORM);
+            let light = buffer(bytemuck::bytes_of(&view.clip_from_world), BufferUsages::UNIFORM);
             let uniform = LookupUniform {
-                map_from_world: lookup.frustum.map_from_world,
+                map_from_world: view.map_from_world(),
                 texels: texels.as_vec2().to_array(),
                 kernel: settings.map.kernel,
                 padding: 0,

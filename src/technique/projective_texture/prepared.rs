@@ -6,9 +6,10 @@ use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
+use crate::technique::map::projection::{Site, View};
 use crate::technique::map::{Lookup, texel_footprint};
 use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 pub(super) struct PreparedPicture<'j> {
     pub(super) job: Job<'j>,
@@ -22,8 +23,8 @@ impl<'j> PreparedPicture<'j> {
     pub(super) fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let frustum = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
-        let lookup = Lookup::new(frustum, &settings.map, job.light);
+        let views = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
+        let lookup = Lookup::new(views, &settings.map, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = PicturePasses::new(&job, &settings, &lookup, &receivers)?;
         Ok(Self { job, settings, lookup, passes, receivers })
@@ -33,13 +34,16 @@ impl<'j> PreparedPicture<'j> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
     }
 
-    /// (uv × texels, q) of a point; `None` behind the light and beside the picture. Its depth does not matter.
-    pub(super) fn place(&self, point_in_world: DVec3) -> Option<(DVec2, f64)> {
-        let frustum = &self.lookup.frustum;
-        let in_map = frustum.project(point_in_world);
-        let uv = in_map.truncate().truncate() / in_map.w;
-        let is_inside = in_map.w > 0.0 && uv.min_element() >= 0.0 && uv.max_element() < 1.0;
-        is_inside.then(|| (uv * frustum.texels.as_dvec2(), in_map.w))
+    /// The one view of the picture.
+    pub(super) fn view(&self) -> &View {
+        &self.lookup.views[0]
+    }
+
+    /// A point as the light sees it; `None` behind the light and beside the picture. Its depth does not matter.
+    pub(super) fn place(&self, point_in_world: DVec3) -> Option<Site<'_>> {
+        let site = self.view().site(point_in_world);
+        let is_inside = site.at.q > 0.0 && site.at.uv.min_element() >= 0.0 && site.at.uv.max_element() < 1.0;
+        is_inside.then_some(site)
     }
 }
 
@@ -54,11 +58,10 @@ impl Prepared for PreparedPicture<'_> {
     }
 
     fn facts(&self) -> Vec<(String, String)> {
-        let frustum = &self.lookup.frustum;
         let meshes = &self.job.scene.meshes;
         let receiving = meshes.iter().filter(|mesh| mesh.receives && self.settings.takes_shadow(mesh)).count();
         vec![
-            ("light near, far".to_owned(), format!("{:.6} m, {:.6} m", frustum.near_m, frustum.far_m)),
+            ("light near, far".to_owned(), self.view().near_far.clone()),
             ("thrown on".to_owned(), format!("{receiving} of {} meshes", meshes.len())),
         ]
     }
@@ -73,7 +76,6 @@ impl Prepared for PreparedPicture<'_> {
 
     fn footprint(&self, pixel: u32) -> Option<Footprint> {
         let receiver = self.receiver(pixel)?;
-        let (_, q) = self.place(receiver.point_in_world)?;
-        texel_footprint(&self.job, &self.lookup.frustum, &receiver, q)
+        texel_footprint(&self.job, &self.place(receiver.point_in_world)?, &receiver)
     }
 }

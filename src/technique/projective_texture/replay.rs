@@ -48,7 +48,9 @@ fn takes_shadow(picture: &PreparedPicture<'_>, receiver: &Receiver) -> bool {
 
 /// Where the picture is read for a receiver, in texels; `None` where it is not.
 fn position(picture: &PreparedPicture<'_>, receiver: &Receiver) -> Option<DVec2> {
-    takes_shadow(picture, receiver).then(|| picture.place(receiver.point_in_world))?.map(|(position, _)| position)
+    takes_shadow(picture, receiver)
+        .then(|| picture.place(receiver.point_in_world))?
+        .map(|site| site.position_in_texels())
 }
 
 fn each_tap(picture: &PreparedPicture<'_>, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
@@ -61,8 +63,8 @@ fn texels_read(picture: &PreparedPicture<'_>, pixels: &[u32]) -> ExactTexels {
     let of_pixel = |pixel: &u32| {
         let mut indices = Vec::new();
         if let Some(at) = picture.receiver(*pixel).and_then(|receiver| position(picture, &receiver)) {
-            indices.extend(picture.lookup.texel_index(at.floor().as_ivec2()));
-            each_tap(picture, at, &mut |texel, _| indices.extend(picture.lookup.texel_index(texel)));
+            indices.extend(picture.lookup.texel_index(0, at.floor().as_ivec2()));
+            each_tap(picture, at, &mut |texel, _| indices.extend(picture.lookup.texel_index(0, texel)));
         }
         indices
     };
@@ -72,7 +74,7 @@ fn texels_read(picture: &PreparedPicture<'_>, pixels: &[u32]) -> ExactTexels {
 
 /// 0 where a caster covers the texel's centre.
 fn white(picture: &PreparedPicture<'_>, texels: &ExactTexels, texel: IVec2) -> f64 {
-    let rank = picture.lookup.texel_index(texel).and_then(|index| texels.rank(index));
+    let rank = picture.lookup.texel_index(0, texel).and_then(|index| texels.rank(index));
     lit(rank.is_none_or(|rank| texels.at(rank).triangle.is_none()))
 }
 
@@ -142,7 +144,7 @@ pub(super) fn lookup_facts(picture: &PreparedPicture<'_>, pixel: u32) -> Vec<(St
     let mut facts = vec![fact("position", format!("({:.4}, {:.4}) texels", at.x, at.y))];
     /// More taps than this are not listed one by one.
     const LISTED_TAPS: usize = 25;
-    let width = picture.lookup.frustum.texels.x;
+    let width = picture.lookup.texels().x;
     for (rank, index) in texels.indices.iter().enumerate().take(LISTED_TAPS) {
         let holds = texels.at(rank).triangle.map_or_else(
             || "white".to_owned(),

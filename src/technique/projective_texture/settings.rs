@@ -2,7 +2,9 @@
 
 use crate::scene::Mesh;
 use crate::technique::Spec;
-use crate::technique::map::{DepthFormat, Fit, Settings as MapSettings, bias, filter, projection};
+use crate::technique::map::{
+    Border, CasterSides, DepthFormat, Fit, NearMode, Seam, Settings as MapSettings, bias, filter, projection,
+};
 
 /// Everything the user can set about a projective texture.
 #[derive(Clone, Copy)]
@@ -47,6 +49,10 @@ impl Settings {
             reversed: true,
             bias_numbers: NO_BIAS,
             fit: Fit::of(spec),
+            near_mode: NearMode::Extend,
+            caster_sides: CasterSides::All,
+            seam: Seam::PerTap,
+            border: Border::Lit,
         };
         let receivers = match spec.choice("receivers").0 {
             "all" => ReceiverChoice::All,

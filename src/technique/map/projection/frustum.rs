@@ -1,7 +1,8 @@
-//! A light's view frustum and its matrices: computed in f64, rounded once to f32, and from then on the rounded numbers
-//! are what both the GPU and its f64 twins use.
+//! A light's view frustum, computed in f64: the usual way to a [`View`], which rounds it once.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, UVec2, dcamera::rh};
+use super::homogeneous::Homogeneous;
+use super::view::{Rows, View};
+use glam::{DMat4, DVec2, UVec2, Vec4, dcamera::rh};
 
 /// How rays run through the frustum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,19 +39,7 @@ pub struct LightFrustum {
     pub reversed: bool,
     /// Width and height of the map in texels.
     pub texels: UVec2,
-    /// What the rasteriser uses: world to wgpu clip space, rounded.
-    pub light_clip_from_world: Mat4,
-    /// What lookups use: world to (u, v, depth, 1) × q with v down, rounded.
-    pub map_from_world: Mat4,
 }
-
-/// The map's texture coordinates from clip space: the one place where v is flipped.
-const MAP_FROM_CLIP: DMat4 = DMat4::from_cols(
-    DVec4::new(0.5, 0.0, 0.0, 0.0),
-    DVec4::new(0.0, -0.5, 0.0, 0.0),
-    DVec4::new(0.0, 0.0, 1.0, 0.0),
-    DVec4::new(0.5, 0.5, 0.0, 1.0),
-);
 
 impl Window {
     /// The smallest window around some points; a point at zero without any.
@@ -81,79 +70,39 @@ impl Window {
 }
 
 impl LightFrustum {
-    /// Rounds the matrices of a fit.
+    /// World to wgpu clip space.
     #[must_use]
-    pub fn new(
-        light_view_from_world: DMat4,
-        window: Window,
-        (near_m, far_m): (f64, f64),
-        shape: Shape,
-        reversed: bool,
-        texels: UVec2,
-    ) -> Self {
-        let clip_from_view = clip_from_view(window, near_m, far_m, shape, reversed);
-        let light_clip_from_world = clip_from_view * light_view_from_world;
-        Self {
-            light_view_from_world,
-            window,
-            near_m,
-            far_m,
-            shape,
-            reversed,
-            texels,
-            light_clip_from_world: light_clip_from_world.as_mat4(),
-            map_from_world: (MAP_FROM_CLIP * light_clip_from_world).as_mat4(),
+    pub fn clip_from_world(&self) -> DMat4 {
+        let Self { window, near_m, far_m, shape, reversed, .. } = *self;
+        clip_from_view(window, near_m, far_m, shape, reversed) * self.light_view_from_world
+    }
+
+    /// The view of a map that this frustum is.
+    #[must_use]
+    pub fn view(&self, name: &str) -> View {
+        let clip_from_world = self.clip_from_world();
+        View {
+            name: name.to_owned(),
+            window: self.window_text(),
+            near_far: format!("{:.6} m, {:.6} m", self.near_m, self.far_m),
+            layout: &Homogeneous,
+            rows: Rows::of_clip(&clip_from_world),
+            clip_from_world: clip_from_world.as_mat4(),
+            selector: Vec4::ZERO,
+            depth_sign: if self.reversed { -1.0 } else { 1.0 },
+            texels: self.texels,
         }
     }
 
-    /// Texel width and height where q = 1: metres for parallel rays, per metre of distance for perspective ones.
-    #[must_use]
-    pub fn texel_at_q1(&self) -> DVec2 {
-        (self.window.max - self.window.min) / self.texels.as_dvec2()
-    }
-
-    /// Texel width and height in metres at a homogeneous q (the view distance of a perspective map, else 1).
-    #[must_use]
-    pub fn texel_m(&self, q: f64) -> DVec2 {
-        self.texel_at_q1() * q
-    }
-
-    /// `[a, b]`: one unit of depth is `a + b q²` metres along the view.
-    #[must_use]
-    pub fn metres_per_depth_terms(&self) -> [f64; 2] {
-        let range = self.far_m - self.near_m;
+    fn window_text(&self) -> String {
+        let size = self.window.max - self.window.min;
         match self.shape {
-            Shape::Parallel => [range, 0.0],
-            Shape::Perspective => [0.0, range / (self.near_m * self.far_m)],
+            Shape::Parallel => format!("{:.4} m x {:.4} m", size.x, size.y),
+            Shape::Perspective => {
+                let angles = [size.x, size.y].map(|tangents| 2.0 * (0.5 * tangents).atan().to_degrees());
+                format!("{:.2} x {:.2} degrees", angles[0], angles[1])
+            }
         }
-    }
-
-    /// Metres along the view per unit of depth at q.
-    #[must_use]
-    pub fn metres_per_depth(&self, q: f64) -> f64 {
-        let [a, b] = self.metres_per_depth_terms();
-        a + b * q * q
-    }
-
-    /// (u q, v q, depth q, q) of a world point, in f64 through the rounded matrix.
-    #[must_use]
-    pub fn project(&self, point_in_world: DVec3) -> DVec4 {
-        self.map_from_world.as_dmat4() * point_in_world.extend(1.0)
-    }
-
-    /// Change of depth per unit of u and of v along a plane through `point_in_world`: depth is affine in (u, v) on any
-    /// plane, for parallel and perspective maps alike.
-    #[must_use]
-    pub fn depth_gradient(&self, world_from_map: &DMat4, point_in_world: DVec3, normal_in_world: DVec3) -> DVec2 {
-        let plane = normal_in_world.extend(-normal_in_world.dot(point_in_world));
-        let plane_in_map = world_from_map.transpose() * plane;
-        DVec2::new(-plane_in_map.x, -plane_in_map.y) / plane_in_map.z
-    }
-
-    /// Signed so that larger is farther from the light: +1 forward, −1 reversed.
-    #[must_use]
-    pub fn depth_sign(&self) -> f64 {
-        if self.reversed { -1.0 } else { 1.0 }
     }
 }
 
@@ -174,10 +123,14 @@ fn clip_from_view(window: Window, near_m: f64, far_m: f64, shape: Shape, reverse
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Bounds;
+    use glam::{DVec3, DVec4};
 
-    fn frustum(shape: Shape, reversed: bool) -> LightFrustum {
+    fn view(shape: Shape, reversed: bool) -> View {
         let window = Window { min: DVec2::new(-1.0, -0.5), max: DVec2::new(2.0, 1.5) };
-        LightFrustum::new(DMat4::IDENTITY, window, (1.0, 30.0), shape, reversed, UVec2::new(64, 32))
+        let light_view_from_world = DMat4::IDENTITY;
+        let texels = UVec2::new(64, 32);
+        LightFrustum { light_view_from_world, window, near_m: 1.0, far_m: 30.0, shape, reversed, texels }.view("test")
     }
 
     /// Depth of a point `distance` in front of the light, by the formulas of docs/map.md.
@@ -197,32 +150,81 @@ mod tests {
     fn window_corners_and_depths_land_where_they_should() {
         for shape in [Shape::Parallel, Shape::Perspective] {
             for reversed in [false, true] {
-                let frustum = frustum(shape, reversed);
+                let view = view(shape, reversed);
                 for distance in [1.0, 2.5, 30.0] {
                     let scale = if shape == Shape::Parallel { 1.0 } else { distance };
-                    let top_left = DVec3::new(-scale, 1.5 * scale, -distance);
-                    let map = frustum.project(top_left);
-                    let (uv, depth) = (map.truncate().truncate() / map.w, map.z / map.w);
-                    assert!(uv.abs().max_element() < ROUNDING, "{shape:?} {reversed} {uv}");
-                    assert!((depth - expected_depth(shape, reversed, distance)).abs() < ROUNDING);
-                    assert!((map.w - scale).abs() < ROUNDING * scale);
+                    let at = view.project(DVec3::new(-scale, 1.5 * scale, -distance));
+                    assert!(at.uv.abs().max_element() < ROUNDING, "{shape:?} {reversed} {at:?}");
+                    assert!((at.depth - expected_depth(shape, reversed, distance)).abs() < ROUNDING);
+                    assert!((at.q - scale).abs() < ROUNDING * scale);
                 }
             }
         }
     }
 
     #[test]
-    fn depth_gradient_equals_finite_differences() {
+    fn texels_and_depth_are_as_wide_as_the_formulas_say() {
+        for reversed in [false, true] {
+            let parallel = view(Shape::Parallel, reversed);
+            let site = parallel.site(DVec3::new(0.3, 0.2, -7.0));
+            assert!((site.texel_m() - DVec2::new(3.0 / 64.0, 2.0 / 32.0)).abs().max_element() < ROUNDING);
+            assert!((site.metres_per_depth() - 29.0).abs() < 29.0 * ROUNDING);
+            // On the axis of a perspective view: width per metre of distance, and d² (f − n) / (n f).
+            let perspective = view(Shape::Perspective, reversed);
+            let site = perspective.site(DVec3::new(0.0, 0.0, -7.0));
+            let off = site.texel_m() - 7.0 * DVec2::new(3.0 / 64.0, 2.0 / 32.0);
+            assert!(off.abs().max_element() < ROUNDING, "{off}");
+            assert!((site.metres_per_depth() / (49.0 * 29.0 / 30.0) - 1.0).abs() < ROUNDING);
+        }
+    }
+
+    #[test]
+    fn gradients_equal_finite_differences() {
         for shape in [Shape::Parallel, Shape::Perspective] {
-            let frustum = frustum(shape, true);
-            let world_from_map = frustum.map_from_world.as_dmat4().inverse();
+            let view = view(shape, true);
             let (point, normal) = (DVec3::new(0.3, 0.2, -7.0), DVec3::new(0.4, -0.5, 1.0).normalize());
-            let gradient = frustum.depth_gradient(&world_from_map, point, normal);
-            let map_of = |p: DVec3| frustum.project(p).truncate() / frustum.project(p).w;
-            for tangent in [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())] {
-                let step = map_of(point + 1e-4 * tangent) - map_of(point - 1e-4 * tangent);
-                let predicted = gradient.dot(step.truncate());
-                assert!((predicted - step.z).abs() < 1e-6 * step.length(), "{shape:?}: {predicted} {}", step.z);
+            let site = view.site(point);
+            let [along_u, along_v] = site.texel_steps_m(normal);
+            for (step, texels) in [(along_u, DVec2::X), (along_v, DVec2::Y)] {
+                let ends = [-0.5e-3, 0.5e-3].map(|share| view.site(point + share * step));
+                let moved = (ends[1].position_in_texels() - ends[0].position_in_texels()) * 1e3;
+                assert!((moved - texels).length() < 1e-6, "{shape:?}: {moved}");
+                let depth = (ends[1].at.depth - ends[0].at.depth).abs() * 1e3;
+                let slope = site.slope_per_texel(normal).dot(texels);
+                assert!((depth - slope).abs() < 1e-6 * slope, "{shape:?}: {depth} {slope}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ray_through_a_place_holds_the_points_that_lie_there_nearest_first() {
+        let bounds = Bounds { min: DVec3::new(-9.0, -9.0, -20.0), max: DVec3::new(9.0, 9.0, 5.0) };
+        for shape in [Shape::Parallel, Shape::Perspective] {
+            for reversed in [false, true] {
+                let view = view(shape, reversed);
+                let place = DVec2::new(40.5, 3.5);
+                let ray = view.ray_through(place, &bounds).unwrap();
+                for share in [0.1, 0.5, 1.0] {
+                    let site = view.site(ray.from.lerp(ray.to, share));
+                    assert!((site.position_in_texels() - place).length() < 1e-9 && site.at.q > 0.0);
+                }
+                assert!(ray.from.z > ray.to.z, "{shape:?} {reversed}");
+                let beside = view.layout.point_beside(&view.rows, ray.to, &view.project(ray.to), DVec2::new(0.7, 0.2));
+                assert!((view.project(beside).uv - DVec2::new(0.7, 0.2)).length() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_triangle_that_faces_the_light_is_wound_as_the_view_says() {
+        for shape in [Shape::Parallel, Shape::Perspective] {
+            for reversed in [false, true] {
+                let view = view(shape, reversed);
+                // Counter-clockwise as seen from the light at the origin, or from along +z.
+                let corners = [DVec3::new(0.0, 0.0, -5.0), DVec3::new(1.0, 0.0, -5.0), DVec3::new(0.0, 1.0, -5.0)];
+                let [a, b, c] = corners.map(|corner| view.project(corner).uv * DVec2::new(1.0, -1.0));
+                let light = if shape == Shape::Parallel { DVec4::Z } else { DVec4::W };
+                assert_eq!((b - a).perp_dot(c - a).signum(), view.winding(light), "{shape:?} {reversed}");
             }
         }
     }

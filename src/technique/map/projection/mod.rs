@@ -1,34 +1,50 @@
-//! The projection axis: how the light's view is laid out in the map.
+//! The projection axis: how the light's view is laid out in the map. A projection fits one or several [`View`]s, one
+//! layer of the map each, and says which of them a receiver reads.
 //!
-//! Adding one: a file here and a line in [`registry`].
+//! Adding one: a file here, a WGSL file of the same stem in `shaders/map/projection/` that defines `select_views` unless
+//! there is one view only, a line in [`registry`].
 
 mod clip;
+mod cube;
+mod fit;
 mod frustum;
+mod homogeneous;
 mod single;
+mod site;
+mod view;
 
 pub use frustum::{LightFrustum, Shape, Window};
+pub use site::Site;
+pub(in crate::technique) use view::GpuView;
+pub use view::{Gradients, InMap, Layout, Rows, View};
 
 use super::Settings;
 use super::Unsupported;
+use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::{Light, Scene};
 use glam::DVec3;
 
 /// Every projection.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Projection] {
-    &[&single::Single]
+    &[&single::Single, &cube::Cube]
 }
+
+/// `select_views` of projections with one view.
+const ONE_VIEW: Wgsl = wgsl!("map/projection/one_view.wgsl");
 
 /// A layout of the light's view.
 pub trait Projection: Sync {
     /// Its name in specifications.
     fn name(&self) -> &'static str;
+    /// The WGSL that defines `select_views`.
+    fn shader(&self) -> Wgsl;
     /// Whether it can hold this light's receivers.
     ///
     /// # Errors
     /// The typed reason why not.
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported>;
-    /// The light's frustum. `visible` are the asked receivers of the picture, for fits that follow the camera.
+    /// The views, at least one. `visible` are the asked receivers of the picture, for fits that follow the camera.
     ///
     /// # Errors
     /// The typed reason why none holds them.
@@ -38,7 +54,36 @@ pub trait Projection: Sync {
         light: &Light,
         settings: &Settings,
         visible: &[DVec3],
-    ) -> Result<LightFrustum, Unsupported>;
+    ) -> Result<Vec<View>, Unsupported>;
+    /// The views that answer for a world point; the f64 twin of `select_views`.
+    fn select(&self, _views: &[View], _point_in_world: DVec3) -> Shares {
+        Shares::one(0)
+    }
+}
+
+/// Which views answer for a point, by index, and with which weights: one, or two that are blended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// The view that the point belongs to.
+    pub first: usize,
+    /// The view that it is blended with.
+    pub second: usize,
+    /// Weight of the second; the first has the rest.
+    pub second_weight: f64,
+}
+
+impl Shares {
+    /// One view alone.
+    #[must_use]
+    pub fn one(view: usize) -> Self {
+        Self { first: view, second: view, second_weight: 0.0 }
+    }
+
+    /// Views of some weight.
+    pub fn iter(self) -> impl Iterator<Item = (usize, f64)> {
+        let both = [(self.first, 1.0 - self.second_weight), (self.second, self.second_weight)];
+        both.into_iter().filter(|(_, weight)| *weight > 0.0)
+    }
 }
 
 /// A registered projection; the first one for a name that no declared parameter can hold.

@@ -1,0 +1,51 @@
+// Draws casters with a depth of its own: where u and v are warped but depth is not, and where casters before the near
+// plane must be drawn at it though the device always clips. The rasteriser's bias does not reach such depths, so it is
+// added here.
+
+struct Caster {
+    clip_from_world: mat4x4f,
+    depth_row: vec4f,
+    depth_q_row: vec4f,
+    // In units of a fixed-point depth, and in units of the last place of a float one.
+    bias_constant: f32,
+    bias_constant_ulps: f32,
+    bias_slope: f32,
+    // 0: no limit.
+    bias_clamp: f32,
+    depth_sign: f32,
+    // Whether what lies before the near plane is drawn at it.
+    clamps: u32,
+    padding: vec2u,
+}
+@group(0) @binding(0) var<uniform> caster: Caster;
+
+struct Corner {
+    @builtin(position) position: vec4f,
+    // Depth times its divisor, and the divisor.
+    @location(0) depth: vec2f,
+}
+
+@vertex
+fn vertex(@location(0) position_in_world: vec3f) -> Corner {
+    let point = vec4f(position_in_world, 1.0);
+    let clip = caster.clip_from_world * point;
+    // Any depth that is not clipped.
+    let position = vec4f(clip.xy, 0.5 * clip.w, clip.w);
+    return Corner(position, vec2f(dot(caster.depth_row, point), dot(caster.depth_q_row, point)));
+}
+
+@fragment
+fn fragment(corner: Corner) -> @builtin(frag_depth) f32 {
+    let depth = corner.depth.x / corner.depth.y;
+    let slope = max(abs(dpdx(depth)), abs(dpdy(depth)));
+    if caster.clamps == 0u && (depth < 0.0 || depth > 1.0) {
+        discard;
+    }
+    // 2^(exponent - 23) is a unit of a float's last place.
+    let unit = ldexp(1.0, frexp(abs(depth)).exp - 24);
+    var bias = caster.bias_constant + caster.bias_constant_ulps * unit + caster.bias_slope * slope;
+    if caster.bias_clamp > 0.0 {
+        bias = min(bias, caster.bias_clamp);
+    }
+    return clamp(depth + caster.depth_sign * bias, 0.0, 1.0);
+}

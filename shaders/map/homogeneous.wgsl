@@ -1,0 +1,26 @@
+// Twin of src/technique/map/projection/homogeneous.rs.
+
+fn project(view: View, point_in_world: vec3f) -> InMap {
+    let point = vec4f(point_in_world, 1.0);
+    let q = dot(view.q_row, point);
+    let uv = vec2f(dot(view.u_row, point), dot(view.v_row, point)) / q;
+    return InMap(uv, dot(view.depth_row, point) / dot(view.depth_q_row, point), q);
+}
+
+fn gradients(view: View, point_in_world: vec3f, at: InMap) -> Gradients {
+    return Gradients(
+        (view.u_row.xyz - at.uv.x * view.q_row.xyz) / at.q,
+        (view.v_row.xyz - at.uv.y * view.q_row.xyz) / at.q,
+        (view.depth_row.xyz - at.depth * view.depth_q_row.xyz) / dot(view.depth_q_row, vec4f(point_in_world, 1.0)),
+    );
+}
+
+// On the plane of equal q, or for parallel rays on the plane across them: u and v are affine there, so this is exact.
+fn point_beside(view: View, point_in_world: vec3f, at: InMap, uv: vec2f) -> vec3f {
+    let around = gradients(view, point_in_world, at);
+    let ray = cross(around.u, around.v);
+    let normal = select(view.q_row.xyz, ray, all(view.q_row.xyz == vec3f(0.0)));
+    let move_uv = uv - at.uv;
+    return point_in_world
+        + (move_uv.x * cross(around.v, normal) + move_uv.y * cross(normal, around.u)) / dot(normal, ray);
+}

@@ -1,0 +1,77 @@
+// One view of a map, and what follows from the gradients of its coordinates. Twin of
+// src/technique/map/projection/{view,site}.rs; a layout file defines project, gradients and point_beside.
+
+struct View {
+    u_row: vec4f,
+    v_row: vec4f,
+    q_row: vec4f,
+    depth_row: vec4f,
+    depth_q_row: vec4f,
+    // What the projection selects views by.
+    selector: vec4f,
+    // +1 where depth grows away from the light, -1 where it shrinks.
+    depth_sign: f32,
+    // Three scalars: a vector would be aligned to 16 bytes.
+    padding: array<u32, 3>,
+}
+
+// Where a world point lies in a view.
+struct InMap {
+    uv: vec2f,
+    depth: f32,
+    q: f32,
+}
+
+// How that changes with the world position, per metre.
+struct Gradients {
+    u: vec3f,
+    v: vec3f,
+    depth: vec3f,
+}
+
+// The views that answer for a point: one, or two that are blended.
+struct Shares {
+    first: u32,
+    second: u32,
+    second_weight: f32,
+}
+
+// Depth per texel beyond which every bias is at its cap.
+const STEEPEST: f32 = 1e3;
+const POSITION_ROUNDING: f32 = 1.1920929e-7; // 2^-23
+
+fn one_view(view: u32) -> Shares {
+    return Shares(view, view, 0.0);
+}
+
+// Width and height of a texel in metres, across the light's ray.
+fn texel_m(at: Gradients, texels: vec2f) -> vec2f {
+    return vec2f(length(at.v), length(at.u)) / (length(cross(at.u, at.v)) * texels);
+}
+
+// Metres along the light's ray per unit of depth.
+fn metres_per_depth(at: Gradients) -> f32 {
+    let ray = cross(at.u, at.v);
+    return length(ray) / abs(dot(at.depth, ray));
+}
+
+// Change of depth from one texel to the next along u and along v on a plane, without sign.
+fn slope_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+    let volume = dot(normal_in_world, cross(at.u, at.v)) * texels;
+    let change =
+        abs(vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u))));
+    // A plane that the light sees edge-on has no volume.
+    let edge_on = abs(volume) * STEEPEST <= change;
+    return select(change / abs(volume), vec2f(STEEPEST), edge_on);
+}
+
+// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
+fn rounding(view: View, point_in_world: vec3f, in_map: InMap, slope: vec2f, texels: vec2f) -> f32 {
+    let point = abs(vec4f(point_in_world, 1.0));
+    let reach_q = dot(abs(view.q_row), point);
+    let depth_q = dot(view.depth_q_row, vec4f(point_in_world, 1.0));
+    let depth = (dot(abs(view.depth_row), point) + abs(in_map.depth) * dot(abs(view.depth_q_row), point)) / depth_q;
+    let u = (dot(abs(view.u_row), point) + abs(in_map.uv.x) * reach_q) / in_map.q;
+    let v = (dot(abs(view.v_row), point) + abs(in_map.uv.y) * reach_q) / in_map.q;
+    return POSITION_ROUNDING * (depth + slope.x * texels.x * u + slope.y * texels.y * v);
+}

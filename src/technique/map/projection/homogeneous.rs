@@ -1,0 +1,77 @@
+//! The usual layout: u, v and depth are quotients of linear functions of the world point, as one 4 × 4 matrix (or two,
+//! if depth is not warped along) gives them. Twin of `shaders/map/homogeneous.wgsl`.
+
+use super::view::{Gradients, InMap, Layout, Rows, apply};
+use crate::scene::{Bounds, Segment};
+use glam::{DVec2, DVec3, Vec4};
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Homogeneous;
+
+/// Rays reach beyond the scene's box by this share of its radius, so that no rounding cuts its surface off.
+const BEYOND: f64 = 1e-3;
+
+impl Layout for Homogeneous {
+    fn project(&self, rows: &Rows, point_in_world: DVec3) -> InMap {
+        let q = apply(rows.q, point_in_world);
+        let uv = DVec2::new(apply(rows.u, point_in_world), apply(rows.v, point_in_world)) / q;
+        InMap { uv, depth: apply(rows.depth, point_in_world) / apply(rows.depth_q, point_in_world), q }
+    }
+
+    fn gradients(&self, rows: &Rows, point_in_world: DVec3, at: &InMap) -> Gradients {
+        let of_quotient = |row: Vec4, divisor: Vec4, value: f64, divided_by: f64| {
+            (row.truncate().as_dvec3() - value * divisor.truncate().as_dvec3()) / divided_by
+        };
+        Gradients {
+            u: of_quotient(rows.u, rows.q, at.uv.x, at.q),
+            v: of_quotient(rows.v, rows.q, at.uv.y, at.q),
+            depth: of_quotient(rows.depth, rows.depth_q, at.depth, apply(rows.depth_q, point_in_world)),
+        }
+    }
+
+    /// On the plane of equal q, or for parallel rays on the plane across them: u and v are affine there, so this is exact.
+    fn point_beside(&self, rows: &Rows, point_in_world: DVec3, at: &InMap, uv: DVec2) -> DVec3 {
+        let Gradients { u, v, .. } = self.gradients(rows, point_in_world, at);
+        let of_q = rows.q.truncate().as_dvec3();
+        let normal = if of_q == DVec3::ZERO { u.cross(v) } else { of_q };
+        let step = uv - at.uv;
+        point_in_world + (step.x * v.cross(normal) + step.y * normal.cross(u)) / normal.dot(u.cross(v))
+    }
+
+    /// The planes u = const and v = const meet in a line; what lies behind the view is cut off.
+    fn ray_through(&self, rows: &Rows, uv: DVec2, bounds: &Bounds, depth_sign: f64) -> Option<Segment> {
+        let plane = |row: Vec4, value: f64| row.as_dvec4() - value * rows.q.as_dvec4();
+        let (a, b) = (plane(rows.u, uv.x), plane(rows.v, uv.y));
+        let (normal_a, normal_b) = (a.truncate(), b.truncate());
+        let along = normal_a.cross(normal_b);
+        let centre = bounds.centre();
+        let off = |plane: glam::DVec4| -plane.dot(centre.extend(1.0));
+        let closest =
+            centre + (off(a) * normal_b.cross(along) + off(b) * along.cross(normal_a)) / along.length_squared();
+        let radius = (1.0 + BEYOND) * bounds.radius().max(f64::MIN_POSITIVE);
+        let half_squared = radius * radius - (closest - centre).length_squared();
+        if half_squared.is_nan() || half_squared <= 0.0 {
+            return None;
+        }
+        let step = along.normalize() * half_squared.sqrt();
+        let (from, to) = in_front(rows, closest - step, closest + step)?;
+        let depth = |point: DVec3| apply(rows.depth, point) / apply(rows.depth_q, point);
+        let middle = from.midpoint(to);
+        let slope = self.gradients(rows, middle, &InMap { uv, depth: depth(middle), q: apply(rows.q, middle) }).depth;
+        let runs_away = depth_sign * slope.dot(to - from) >= 0.0;
+        Some(if runs_away { Segment { from, to } } else { Segment { from: to, to: from } })
+    }
+}
+
+/// The part of a segment where q > 0.
+fn in_front(rows: &Rows, from: DVec3, to: DVec3) -> Option<(DVec3, DVec3)> {
+    let (at_from, at_to) = (apply(rows.q, from), apply(rows.q, to));
+    let crossing = || from.lerp(to, at_from / (at_from - at_to));
+    match (at_from > 0.0, at_to > 0.0) {
+        (true, true) => Some((from, to)),
+        (true, false) => Some((from, crossing())),
+        (false, true) => Some((crossing(), to)),
+        (false, false) => None,
+    }
+}

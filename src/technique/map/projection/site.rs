@@ -1,0 +1,83 @@
+//! A world point as a view sees it, with how the map's coordinates change around it: texel widths, metres per depth and
+//! slopes all come from these gradients, so they hold for every projection. Twin of `shaders/map/view.wgsl`.
+//!
+//! B. Lloyd et al., "Warping and Partitioning for Low Error Shadow Maps", 2006, derive texel sizes likewise.
+
+use super::view::{Gradients, InMap, View};
+use glam::{DVec2, DVec3, Vec4};
+
+/// Depth per texel beyond which every bias is at its cap.
+const STEEPEST: f64 = 1e3;
+/// Relative rounding of an f32 position through the rows.
+const POSITION_ROUNDING: f64 = f32::EPSILON as f64;
+
+/// See the module.
+#[derive(Debug, Clone, Copy)]
+pub struct Site<'v> {
+    /// The view.
+    pub view: &'v View,
+    /// The point.
+    pub point_in_world: DVec3,
+    /// Where it lies.
+    pub at: InMap,
+    /// How that changes with the point.
+    pub gradients: Gradients,
+}
+
+impl Site<'_> {
+    /// uv × texels.
+    #[must_use]
+    pub fn position_in_texels(&self) -> DVec2 {
+        self.at.uv * self.view.texels.as_dvec2()
+    }
+
+    /// Along the light's ray, where u and v do not change; not normalised.
+    fn ray(&self) -> DVec3 {
+        self.gradients.u.cross(self.gradients.v)
+    }
+
+    /// Width and height of a texel in metres, across the light's ray.
+    #[must_use]
+    pub fn texel_m(&self) -> DVec2 {
+        let Gradients { u, v, .. } = self.gradients;
+        DVec2::new(v.length(), u.length()) / (self.ray().length() * self.view.texels.as_dvec2())
+    }
+
+    /// Metres along the light's ray per unit of depth.
+    #[must_use]
+    pub fn metres_per_depth(&self) -> f64 {
+        let ray = self.ray();
+        ray.length() / self.gradients.depth.dot(ray).abs()
+    }
+
+    /// World steps that move by one texel along u and along v on a plane through the point.
+    #[must_use]
+    pub fn texel_steps_m(&self, normal_in_world: DVec3) -> [DVec3; 2] {
+        let Gradients { u, v, .. } = self.gradients;
+        let volume = normal_in_world.dot(self.ray()) * self.view.texels.as_dvec2();
+        [v.cross(normal_in_world) / volume.x, normal_in_world.cross(u) / volume.y]
+    }
+
+    /// Change of depth from one texel to the next along u and along v on a plane through the point, without sign.
+    #[must_use]
+    pub fn slope_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
+        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
+        let slope = DVec2::new(self.gradients.depth.dot(along_u), self.gradients.depth.dot(along_v)).abs();
+        // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
+        DVec2::new(STEEPEST.min(slope.x), STEEPEST.min(slope.y))
+    }
+
+    /// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
+    #[must_use]
+    pub fn rounding(&self, slope_per_texel: DVec2) -> f64 {
+        let rows = &self.view.rows;
+        let reach = |row: Vec4| row.as_dvec4().abs().dot(self.point_in_world.abs().extend(1.0));
+        let quotient = |row: Vec4, divisor: Vec4, value: f64, of: f64| (reach(row) + value.abs() * reach(divisor)) / of;
+        let depth_q = super::view::apply(rows.depth_q, self.point_in_world);
+        let depth = quotient(rows.depth, rows.depth_q, self.at.depth, depth_q);
+        let u = quotient(rows.u, rows.q, self.at.uv.x, self.at.q);
+        let v = quotient(rows.v, rows.q, self.at.uv.y, self.at.q);
+        let slope = slope_per_texel * self.view.texels.as_dvec2();
+        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v)
+    }
+}
