@@ -71,7 +71,7 @@ impl Technique for Map {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedMap::new(Settings::of(spec), job)?))
+        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job)?))
     }
 }
 
@@ -221,6 +221,7 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "what stands for the map beyond its border",
         ),
     ]);
+    params.extend(projection::params());
     params.extend(fit_params());
     params
 });

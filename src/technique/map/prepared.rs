@@ -20,15 +20,15 @@ pub(super) struct PreparedMap<'j> {
 }
 
 impl<'j> PreparedMap<'j> {
-    pub(super) fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+    pub(super) fn new(settings: &Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let views = settings.projection.fit(job.scene, job.light, &settings, &visible)?;
-        let lookup = Lookup::new(views, &settings, job.light);
+        let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
+        let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = MapPasses::new(job.gpu, &settings, &lookup, &receivers)?;
+        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers)?;
         let scene_radius_m = job.scene.bounds().radius();
-        Ok(Self { job, settings, lookup, passes, receivers, scene_radius_m })
+        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {

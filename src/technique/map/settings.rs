@@ -32,6 +32,8 @@ pub struct Settings {
     pub seam: Seam,
     /// What stands for the map beyond its border.
     pub border: Border,
+    /// What only some projections read.
+    pub knobs: projection::Knobs,
 }
 
 /// What happens to casters before the near plane.
@@ -171,6 +173,7 @@ impl Settings {
                 "clamp-edge" => Border::ClampEdge,
                 _ => Border::Lit,
             },
+            knobs: projection::Knobs::of(spec),
         }
     }
 
