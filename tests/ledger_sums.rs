@@ -16,7 +16,7 @@ const SIZE: UVec2 = UVec2::new(80, 60);
 
 /// Every axis, every format, filters of odd and even kernels, sizes far too small and of no power of two, every kind of
 /// bias alone and together, and frusta that cut; volumes by what their stencils are given.
-const SPECS: [&str; 38] = [
+const SPECS: &[&str] = &[
     "map",
     "map:bias=none",
     "map:size=512,bias=constant",
@@ -40,6 +40,8 @@ const SPECS: [&str; 38] = [
     "map:fit=receivers,size=300",
     "map:fit=manual,filter=pcf-box3",
     "irregular",
+    "silhouette",
+    "silhouette:size=33,bias=none",
     "map:size=333,near_m=3,far_m=5,phase_u_texels=0.3",
     "map:near_m=0.7,near_mode=depth-clamp,filter=pcf-box3",
     "map:near_mode=fragment-clamp,bias=slope,depth_convention=forward",

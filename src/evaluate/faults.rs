@@ -43,6 +43,8 @@ const FAULTS: &[Fault] = &[
     ("planar/shadow.wgsl", "vec4f(position, 1.0)", "vec4f(position, 1.01)", "planar"),
     ("projective_texture/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", PROJECTED),
     ("projective_texture/lookup.wgsl", "uv * lookup.texels", "uv.yx * lookup.texels", PROJECTED),
+    ("silhouette/points.wgsl", "b.uv * texels - 0.5", "b.uv * texels + 0.5", "silhouette:size=64"),
+    ("silhouette/wedges.wgsl", "position_in_texels - 0.5", "position_in_texels", "silhouette:size=64"),
     ("ray_query/shadow.wgsl", "0.0, end, start", "0.0, 0.1 * end, start", "ray-query"),
     (
         "volume/clip.wgsl",
