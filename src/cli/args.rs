@@ -228,6 +228,9 @@ pub(super) struct RenderArgs {
     /// How the shadows are applied: light on ambient, light on black, or darkness on light
     #[arg(long, value_enum, default_value_t = PipelineName::AmbientLit)]
     pub(super) pipeline: PipelineName,
+    /// Where the picture is lit; area lights are lit on the processor
+    #[arg(long, value_enum, default_value_t = Shader::Gpu)]
+    pub(super) shader: Shader,
     /// With --pipeline darkening: how much of the light a shadow takes away, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.5, value_parser = share)]
     pub(super) darkening: f64,
@@ -248,6 +251,15 @@ pub(super) enum PipelineName {
     Black,
     /// All lighting, then a dark quad over each light's shadow
     Darkening,
+}
+
+/// Where `render` works out colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Shader {
+    /// On the device, in the pipeline's own passes
+    Gpu,
+    /// On the processor, in f64
+    Cpu,
 }
 
 /// What `render --show` draws.

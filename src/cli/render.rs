@@ -1,6 +1,6 @@
 //! `gnomon render`: the scene as a picture, lit with a technique's shadows or the exact ones.
 
-use super::args::{PipelineName, RenderArgs};
+use super::args::{PipelineName, RenderArgs, Shader};
 use super::context::{lights, load, only_light, open_gpu, prepare};
 use super::output::{ImageFormat, OutFile};
 use super::terminal::{Terminal, say};
@@ -9,8 +9,9 @@ use crate::evaluate::View;
 use crate::mask::{Mask, Truth, Visibility};
 use crate::receiver::PixelClass;
 use crate::scene::Light;
-use crate::shade::{Pipeline, shade};
+use crate::shade::{BACKGROUND, Picture, Pipeline, shade};
 use crate::technique::Spec;
+use crate::technique::lighting::light_up;
 
 pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let shown = args.show.map(|show| show::spec(args, show).map(|spec| (show, spec))).transpose()?;
@@ -32,7 +33,7 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
         .collect::<anyhow::Result<Vec<(&Light, Mask)>>>()?;
     let lit: Vec<(&Light, &Mask)> = masks.iter().map(|(light, mask)| (*light, mask)).collect();
     terminal.proceed()?;
-    let picture = shade(&scene, &view.receivers, &lit, pipeline(args));
+    let picture = picture(&view, &lit, args)?;
     if let Some((show, spec)) = shown {
         return show::run(&out, show, &view, lit[0].0, &spec, picture);
     }
@@ -43,6 +44,15 @@ pub(super) fn run(args: &RenderArgs, terminal: &Terminal) -> anyhow::Result<u8> 
     out.write(&bytes)?;
     say(&format!("wrote {}", args.output.display()));
     Ok(exit::OK)
+}
+
+fn picture(view: &View<'_>, lit: &[(&Light, &Mask)], args: &RenderArgs) -> anyhow::Result<Picture> {
+    let pipeline = pipeline(args);
+    if args.shader == Shader::Cpu || lit.iter().any(|(light, _)| light.is_area()) {
+        return Ok(shade(view.scene, &view.receivers, lit, pipeline));
+    }
+    let linear_rgb = light_up(view.gpu, view.scene, &view.geometry, lit, pipeline, BACKGROUND)?;
+    Ok(Picture { size: view.scene.image_size, linear_rgb })
 }
 
 fn pipeline(args: &RenderArgs) -> Pipeline {

@@ -8,6 +8,8 @@ mod diagnose;
 #[cfg(test)]
 mod faults;
 mod jitter;
+#[cfg(test)]
+mod lighting_tests;
 mod motion;
 mod occluders;
 mod profile;

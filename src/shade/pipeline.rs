@@ -1,22 +1,8 @@
 //! Three ways in which renderers apply one mask: light on top of ambient, light on top of nothing, or darkness on top of
 //! light. Formulas: docs/lighting.md#pipelines.
 
+pub use crate::technique::lighting::LightingPipeline as Pipeline;
 use glam::DVec3;
-
-/// What a mask is applied to.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Pipeline {
-    /// Ambient light everywhere, then each light where it is seen.
-    #[default]
-    AmbientLit,
-    /// Depth only, then all of the lighting where a light is seen: shadows are black.
-    Black,
-    /// All of the lighting, then a dark quad blended over each light's shadow.
-    Darkening {
-        /// How much of the light the quad takes away, 0..=1.
-        amount: f64,
-    },
-}
 
 impl Pipeline {
     /// The colour of a pixel from what no shadow changes and, per light, visibility and direct light.

@@ -8,6 +8,7 @@
 mod cost;
 pub mod footprint;
 pub mod irregular;
+pub mod lighting;
 pub mod map;
 mod matrix;
 pub mod param;
