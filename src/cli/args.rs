@@ -25,7 +25,7 @@ pub(super) enum Command {
         gnomon render scenes/torus --light lamp --show volumes -o volumes.png\n  \
         gnomon render scenes/torus -t volume --pipeline darkening --darkening 0.6 -o dark.png")]
     Render(RenderArgs),
-    /// Measure a technique's shadow along a line of the picture: penumbra widths, CSV and plot
+    /// Measure a shadow along a line of the picture: penumbra widths, CSV and plot
     #[command(
         after_help = "Example:\n  gnomon profile scenes/area --light panel -t soft --line 330,240,300,300 --out out/profile"
     )]
@@ -46,7 +46,7 @@ pub(super) enum Command {
     /// Tell what a scene requires, which techniques apply, and what to expect of one
     #[command(after_help = "Example:\n  gnomon inspect scenes/room -t map:size=1024")]
     Inspect(InspectArgs),
-    /// Explain one pixel: ray, occluder, every stage of the technique, the cause and the fix
+    /// Explain one pixel: ray, occluder, every stage, the cause and the fix
     #[command(after_help = "Example:\n  gnomon explain scenes/torus -t map:bias=none --light lamp --pixel 512,400")]
     Explain(ExplainArgs),
     /// Find what is wrong with a technique's shadows, and try the fixes
@@ -288,6 +288,17 @@ pub(super) enum OracleChoice {
     Mitsuba,
     /// The exact ray core, and Mitsuba beside it
     Both,
+}
+
+impl OracleChoice {
+    /// As a command line says it; nothing for the default.
+    pub(super) fn option(self) -> &'static str {
+        match self {
+            Self::Exact => "",
+            Self::Mitsuba => " --oracle mitsuba",
+            Self::Both => " --oracle both",
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]

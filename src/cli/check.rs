@@ -68,7 +68,12 @@ impl Session<'_> {
             for task in of_light {
                 let subject =
                     Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
-                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter, self.args.motion))?;
+                let run = self.check_task(
+                    &view,
+                    &question,
+                    task,
+                    subject.check(self.args.jitter, self.args.motion) + self.args.oracle.option(),
+                )?;
                 self.runs.push(run);
                 self.deeper.push(subject.diagnose());
             }

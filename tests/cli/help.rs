@@ -3,8 +3,21 @@
 use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
-const COMMANDS: [&str; 11] =
-    ["check", "render", "truth", "mask", "judge", "inspect", "explain", "diagnose", "scaffold", "list", "doctor"];
+const COMMANDS: [&str; 13] = [
+    "check",
+    "render",
+    "profile",
+    "compare-render",
+    "truth",
+    "mask",
+    "judge",
+    "inspect",
+    "explain",
+    "diagnose",
+    "scaffold",
+    "list",
+    "doctor",
+];
 
 #[test]
 fn help_names_every_command_and_every_command_has_an_example() {

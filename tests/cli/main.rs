@@ -9,6 +9,7 @@ mod help;
 mod hostile;
 #[cfg(unix)]
 mod interrupted;
+mod oracle;
 mod refused;
 mod specs;
 mod support;
