@@ -1,16 +1,20 @@
 //! The command line: the only place that reads and writes files and talks to the terminal, and the only one that uses
 //! `anyhow`. A command that finds something prints the command for the next step, too.
 
+mod advise;
 mod args;
+mod bench_published;
 mod check;
 mod columns;
 mod command;
+mod compare;
 mod compare_render;
 mod context;
 mod diagnose;
 mod doctor;
 mod exit;
 mod explain;
+mod imagery;
 mod inspect;
 mod judge;
 mod list;
@@ -23,6 +27,7 @@ mod render;
 mod report;
 mod scaffold;
 mod show;
+mod sweep;
 mod tasks;
 mod terminal;
 
@@ -44,6 +49,11 @@ pub fn main() -> ExitCode {
     };
     let result = match cli.command {
         Command::Check(args) => check::run(&args, &terminal),
+        Command::Compare(args) => compare::run(&args),
+        Command::Sweep(args) => sweep::run(&args, &terminal),
+        Command::Merge(args) => sweep::merge(&args),
+        Command::Advise(args) => advise::run(&args, &terminal),
+        Command::BenchPublished(args) => bench_published::run(&args, &terminal),
         Command::Render(args) => render::run(&args, &terminal),
         Command::Profile(args) => profile::run(&args, &terminal),
         Command::CompareRender(args) => compare_render::run(&args, &terminal),

@@ -3,11 +3,16 @@
 use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
-const COMMANDS: [&str; 13] = [
-    "check",
-    "render",
+const COMMANDS: [&str; 18] = [
     "profile",
     "compare-render",
+    "check",
+    "compare",
+    "sweep",
+    "merge",
+    "advise",
+    "bench-published",
+    "render",
     "truth",
     "mask",
     "judge",
@@ -39,7 +44,10 @@ fn help_names_every_command_and_every_command_has_an_example() {
 /// Whether gnomon understands the words of an example: it may fail to find a file, but not to read its arguments.
 fn is_understood(example: &str) -> bool {
     let words: Vec<&str> = example.split_whitespace().skip(1).collect();
-    let nowhere = words.iter().map(|word| word.replace("scenes/", "no/such/").replace("model", "no/such/model"));
+    // A shell would take the quotes off.
+    let nowhere = words
+        .iter()
+        .map(|word| word.trim_matches('\'').replace("scenes/", "no/such/").replace("model", "no/such/model"));
     let call = gnomon(&nowhere.collect::<Vec<_>>());
     !call.stderr.contains("Usage:") && !call.stderr.contains("unknown technique") && !call.stderr.contains("parameter")
 }
