@@ -83,7 +83,7 @@ pub fn search<E>(
     for (line, &length) in lengths.iter().enumerate() {
         let mut steps = Steps { line, budget, try_step: &mut try_step, tried: &mut search.tried };
         let found = match best {
-            None => steps.bisect(0, length)?,
+            None => steps.first_good(length)?,
             Some((step, cost)) => match steps.cheaper_than(cost, step.min(length.saturating_sub(1)), length)? {
                 // What is cheaper may not be the cheapest of its line.
                 Some(cheaper) => steps.bisect(0, cheaper)?.or(Some(cheaper)),
@@ -118,6 +118,21 @@ impl<E, F: FnMut(usize, usize) -> Result<Option<Trial>, E>> Steps<'_, F> {
         let trial = (self.try_step)(self.line, step)?;
         self.tried.extend(trial.map(|trial| (self.line, step, trial)));
         Ok(trial)
+    }
+
+    /// The first step that keeps to the budget. The middle is tried before the dearest, and that before all others: a line
+    /// without an answer takes two trials.
+    fn first_good(&mut self, length: usize) -> Result<Option<usize>, E> {
+        let Some(last) = length.checked_sub(1) else { return Ok(None) };
+        let middle = length / 2;
+        match self.trial(middle)? {
+            None => self.bisect(0, middle),
+            Some(trial) if trial.error <= self.budget => Ok(self.bisect(0, middle)?.or(Some(middle))),
+            Some(_) => match self.trial(last)? {
+                Some(top) if top.error > self.budget => Ok(None),
+                top => Ok(self.bisect(middle + 1, last)?.or(top.map(|_| last))),
+            },
+        }
     }
 
     /// The first of the steps from `low` up to, not including, `high` that keeps to the budget.

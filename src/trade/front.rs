@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn nothing_on_the_front_is_beaten_and_all_else_is() {
-        let points: Vec<Point> = (0..200_u32)
+        let points: Vec<Point> = (1..=200_u32)
             .map(|i| point(f64::from(i.wrapping_mul(2_654_435_761) % 97), f64::from(i.wrapping_mul(40_503) % 89)))
             .collect();
         let beats = |a: &Point, b: &Point| a.error <= b.error && a.cost <= b.cost && a != b;

@@ -5,16 +5,19 @@
 
 use super::front::{Point, front};
 use plotters::coord::Shift;
-use plotters::coord::combinators::IntoLogRange;
-use plotters::coord::combinators::LogCoord;
+use plotters::coord::combinators::{IntoLogRange, LogCoord};
+use plotters::element::{DynElement, IntoDynElement};
 use plotters::prelude::{
     Cartesian2d, ChartBuilder, ChartContext, Circle, Color, Cross, DrawingArea, EmptyElement, IntoDrawingArea,
-    IntoFont, LineSeries, PathElement, Polygon, RGBColor, Rectangle, SVGBackend, SeriesLabelPosition, ShapeStyle, Text,
-    TriangleMarker,
+    IntoFont, LineSeries, PathElement, RGBColor, Rectangle, SVGBackend, Text, TriangleMarker,
 };
 
 /// Pixels of the plot.
-const SIZE: (u32, u32) = (960, 600);
+const SIZE: (u32, u32) = (1060, 600);
+/// Pixels of its right side that the legend has to itself.
+const LEGEND_WIDTH: u32 = 190;
+/// Pixels of a label's letter, and from one line to the next.
+const LETTER: (i32, i32) = (6, 13);
 /// Half the side of a mark, pixels.
 const MARK: i32 = 5;
 /// Families beyond so many share colour and shape with the first ones.
@@ -47,6 +50,7 @@ pub struct Mark {
 #[error("the plot cannot be drawn: {0}")]
 pub struct PlotError(String);
 
+type Area<'b> = DrawingArea<SVGBackend<'b>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// The plot as SVG; `None` without marks. `cost_axis` names the cost with its unit. `least_error` stands for no error at
@@ -70,18 +74,13 @@ fn said(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-fn draw(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-    title: &str,
-    cost_axis: &str,
-    marks: &[Mark],
-    least_error: f64,
-) -> Result<(), String> {
+fn draw(area: &Area<'_>, title: &str, cost_axis: &str, marks: &[Mark], least_error: f64) -> Result<(), String> {
     area.fill(&RGBColor(255, 255, 255)).map_err(said)?;
+    let (plot, legend) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
     let percent = |mark: &Mark| 100.0 * mark.error.max(least_error);
     let x = decades(marks.iter().map(|mark| mark.cost));
     let y = decades(marks.iter().map(percent));
-    let mut chart: Chart<'_, '_> = ChartBuilder::on(area)
+    let mut chart: Chart<'_, '_> = ChartBuilder::on(&plot)
         .caption(title, ("sans-serif", 18).into_font().color(&INK))
         .margin(14)
         .x_label_area_size(52)
@@ -104,53 +103,75 @@ fn draw(
     let points: Vec<Point> = marks.iter().map(|mark| Point { error: percent(mark), cost: mark.cost }).collect();
     let on_front = front(&points);
     let line = on_front.iter().map(|&index| (points[index].cost, points[index].error));
-    chart
-        .draw_series(LineSeries::new(line, INK.stroke_width(1)))
-        .map_err(said)?
-        .label("front: nothing is both cheaper and better")
-        .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], INK));
-    draw_marks(&mut chart, marks, &percent)?;
-    let labels = on_front.iter().map(|&index| {
-        let beyond_middle = points[index].cost > (x.0 * x.1).sqrt();
-        let offset = if beyond_middle { (-8 - 6 * marks[index].label.len() as i32, -16) } else { (8, -16) };
-        EmptyElement::at((points[index].cost, points[index].error))
-            + Text::new(marks[index].label.clone(), offset, ("sans-serif", 12).into_font().color(&INK))
-    });
-    chart.draw_series(labels).map_err(said)?;
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
-        .background_style(RGBColor(255, 255, 255).mix(0.85))
-        .border_style(RULE)
-        .label_font(("sans-serif", 13))
-        .draw()
-        .map_err(said)?;
+    chart.draw_series(LineSeries::new(line, INK.stroke_width(1))).map_err(said)?;
+    let families = families(marks);
+    let family_of = |mark: &Mark| families.iter().position(|family| *family == mark.family).unwrap_or(0);
+    for (mark, point) in marks.iter().zip(&points) {
+        area.draw(&shape(family_of(mark), chart.backend_coord(&(point.cost, point.error)))).map_err(said)?;
+    }
+    draw_labels(&mut chart, marks, &points, &on_front)?;
+    draw_legend(&legend, &families, marks.iter().any(|mark| mark.error < least_error))?;
     area.present().map_err(said)
 }
 
-fn draw_marks(chart: &mut Chart<'_, '_>, marks: &[Mark], percent: &dyn Fn(&Mark) -> f64) -> Result<(), String> {
+fn families(marks: &[Mark]) -> Vec<&str> {
     let mut families: Vec<&str> = marks.iter().map(|mark| mark.family.as_str()).collect();
     families.sort_unstable();
     families.dedup();
-    for (index, family) in families.into_iter().enumerate() {
-        let style = COLOURS[index % COLOURS.len()].filled();
-        let own = marks.iter().filter(|mark| mark.family == family).map(|mark| (mark.cost, percent(mark)));
-        let own: Vec<(f64, f64)> = own.collect();
-        let series = match index % 4 {
-            0 => chart.draw_series(own.into_iter().map(|at| Circle::new(at, MARK, style))),
-            1 => chart.draw_series(own.into_iter().map(|at| TriangleMarker::new(at, MARK + 1, style))),
-            2 => chart.draw_series(own.into_iter().map(|at| EmptyElement::at(at) + square(style))),
-            _ => chart.draw_series(own.into_iter().map(|at| Cross::new(at, MARK, style.stroke_width(2)))),
+    families
+}
+
+/// A family's mark at a place.
+fn shape<'b, P: Clone + 'b>(family: usize, at: P) -> DynElement<'b, SVGBackend<'b>, P> {
+    let (origin, style) = ((0, 0), COLOURS[family % COLOURS.len()].filled());
+    match family % 4 {
+        0 => (EmptyElement::at(at) + Circle::new(origin, MARK, style)).into_dyn(),
+        1 => (EmptyElement::at(at) + TriangleMarker::new(origin, MARK + 1, style)).into_dyn(),
+        2 => (EmptyElement::at(at) + Rectangle::new([(-MARK, -MARK), (MARK, MARK)], style)).into_dyn(),
+        _ => (EmptyElement::at(at) + Cross::new(origin, MARK, style.stroke_width(2))).into_dyn(),
+    }
+}
+
+/// Names the configurations on the front, but for those whose names would cover another's.
+fn draw_labels(chart: &mut Chart<'_, '_>, marks: &[Mark], points: &[Point], on_front: &[usize]) -> Result<(), String> {
+    let mut placed: Vec<[i32; 3]> = Vec::new();
+    let width = (SIZE.0 - LEGEND_WIDTH) as i32;
+    for &index in on_front {
+        let (label, at) = (&marks[index].label, (points[index].cost, points[index].error));
+        let (x, y) = chart.backend_coord(&at);
+        let length = LETTER.0 * label.chars().count() as i32;
+        let offset = if x + length > width { (-8 - length, -16) } else { (8, -16) };
+        let covers = |[left, top, long]: &[i32; 3]| {
+            (y - top).abs() < LETTER.1 && x + offset.0 < left + long && *left < x + offset.0 + length
         };
-        series.map_err(said)?.label(family).legend(move |(x, y)| {
-            Polygon::new(vec![(x + 4, y - 4), (x + 12, y - 4), (x + 12, y + 4), (x + 4, y + 4)], style)
-        });
+        if placed.iter().any(covers) {
+            continue;
+        }
+        placed.push([x + offset.0, y, length]);
+        let text = Text::new(label.clone(), offset, ("sans-serif", 12).into_font().color(&INK));
+        chart.draw_series(std::iter::once(EmptyElement::at(at) + text)).map_err(said)?;
     }
     Ok(())
 }
 
-fn square(style: ShapeStyle) -> Rectangle<(i32, i32)> {
-    Rectangle::new([(-MARK, -MARK), (MARK, MARK)], style)
+fn draw_legend(area: &Area<'_>, families: &[&str], any_without_error: bool) -> Result<(), String> {
+    let line = |index: usize| 60 + 22 * index as i32;
+    let text = |words: &str, at: (i32, i32)| {
+        Text::new(words.to_owned(), (at.0, at.1 - 7), ("sans-serif", 13).into_font().color(&INK))
+    };
+    for (index, family) in families.iter().enumerate() {
+        area.draw(&shape(index, (12, line(index)))).map_err(said)?;
+        area.draw(&text(family, (26, line(index)))).map_err(said)?;
+    }
+    let below = line(families.len());
+    area.draw(&PathElement::new(vec![(4, below), (20, below)], INK)).map_err(said)?;
+    area.draw(&text("front: nothing is", (26, below))).map_err(said)?;
+    area.draw(&text("both cheaper and better", (26, below + 16))).map_err(said)?;
+    if any_without_error {
+        area.draw(&text("no wrong pixel at all is", (4, below + 44))).map_err(said)?;
+        area.draw(&text("drawn as half a pixel", (4, below + 60))).map_err(said)?;
+    }
+    Ok(())
 }
 
 /// Whole powers of ten around some positive values.
@@ -184,9 +205,7 @@ mod tests {
     fn a_plot_says_what_its_axes_are_and_escapes_names() {
         let marks = [mark("map", 0.5, 1e4), mark("map", 0.01, 2e6), mark("volume", 0.0, 3e5)];
         let svg = plot("a <title>", "work", &marks, 1e-6).unwrap().unwrap();
-        for word in
-            ["work", "wrong pixels of those asked, %", "volume", "nothing is both", "&lt;title&gt;", "&lt;&amp;"]
-        {
+        for word in ["work", "wrong pixels of those asked, %", "volume", "&lt;title&gt;", "&lt;&amp;"] {
             assert!(svg.contains(word), "{word}");
         }
         assert!(!svg.contains("<title>") && svg.starts_with("<svg"));

@@ -13,7 +13,7 @@ use super::exit;
 use super::output::OutFolder;
 use super::report::adapter;
 use super::terminal::{Terminal, say, say_or_end};
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::Gpu;
 use crate::report::Report;
 use crate::report::model::Status;
 use crate::scene::Scene;
@@ -93,11 +93,6 @@ pub(super) fn merge(args: &MergeArgs) -> anyhow::Result<u8> {
 fn header(gpu: &Gpu) -> Header {
     let Report { tool, adapter, .. } = Report::new(adapter(gpu), Vec::new());
     Header { sweep: LAYOUT, tool, adapter }
-}
-
-/// Whether the device is gone, so that nothing on it can be used any more.
-fn is_lost(error: &GpuError) -> bool {
-    matches!(error, GpuError::Lost { .. })
 }
 
 /// The user asked to stop, told as every command tells it.

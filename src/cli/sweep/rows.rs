@@ -2,8 +2,8 @@
 
 use super::folder::ResultsFolder;
 use super::limits::{RowLimits, RowWatch};
+use super::proceed;
 use super::truths::TruthFolder;
-use super::{is_lost, proceed};
 use crate::cli::command::Subject;
 use crate::cli::context::lights;
 use crate::cli::report;
@@ -14,6 +14,7 @@ use crate::scene::{Light, Scene};
 use crate::technique::{Spec, TechniqueError};
 use crate::trade::Record;
 use crate::watch::Watch;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// One configuration for one light of one scene.
@@ -118,7 +119,8 @@ impl Session<'_> {
         let subject = Subject { scene: path, light: &row.light.name, spec: &row.spec, size };
         let asked = report::question(row.scene, row.light, &row.spec, subject.check(0, 0));
         let watch = RowWatch::new(self.terminal, self.limits.seconds);
-        let outcome = self.limits.admit(view, question, &row.spec).and_then(|()| {
+        let outcome = guarded(|| {
+            self.limits.admit(view, question, &row.spec)?;
             evaluate(view, question, &row.spec, Effort::FULL, &watch).map_err(|error| watch.told(error))
         });
         let (run, ended) = match outcome {
@@ -141,12 +143,26 @@ impl Session<'_> {
     }
 }
 
+/// The graphics library panics where it maps a buffer of a device that was just lost; that, too, costs one row.
+fn guarded<T>(work: impl FnOnce() -> Result<T, RowError>) -> Result<T, RowError> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(RowError::Panic { why: text.unwrap_or("no reason given").to_owned() })
+    })
+}
+
 /// Why a row has no result.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum RowError {
     /// As for every evaluation.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),
+    /// The graphics library gave up; the device may be gone.
+    #[error("the graphics library gave up: {why}")]
+    Panic {
+        /// Its words.
+        why: String,
+    },
     /// It took too long.
     #[error("took longer than {seconds} s")]
     Time {
@@ -165,11 +181,13 @@ pub(super) enum RowError {
 
 impl RowError {
     fn is_device_lost(&self) -> bool {
-        let gpu: Option<&GpuError> = match self {
-            Self::Evaluate(EvaluateError::Technique(TechniqueError::Gpu(error))) => Some(error),
-            _ => None,
-        };
-        gpu.is_some_and(is_lost)
+        match self {
+            Self::Evaluate(EvaluateError::Technique(TechniqueError::Gpu(error))) => {
+                matches!(error, GpuError::Lost { .. })
+            }
+            Self::Panic { .. } => true,
+            Self::Evaluate(_) | Self::Time { .. } | Self::Memory { .. } => false,
+        }
     }
 }
 
