@@ -19,7 +19,7 @@
 //! evaluate   technique against truth: answer, cost, verdict and ledger of one run
 //! report     Verdict → json, csv, png                                       (pure: returns bytes, no wgpu)
 //! trade      many configurations: grids, results, what nothing beats        (pure: returns bytes, no wgpu)
-//! cli        the only IO and the only anyhow
+//! cli        the only anyhow; all IO but scene files and the oracle's process
 //! ```
 
 pub mod cast;

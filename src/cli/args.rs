@@ -49,7 +49,7 @@ pub(super) enum Command {
         gnomon render scenes/torus --light lamp --show volumes -o volumes.png\n  \
         gnomon render scenes/torus -t volume --pipeline darkening --darkening 0.6 -o dark.png")]
     Render(RenderArgs),
-    /// Measure a technique's shadow along a line of the picture: penumbra widths, CSV and plot
+    /// Measure a shadow along a line of the picture: penumbra widths, CSV and plot
     #[command(
         after_help = "Example:\n  gnomon profile scenes/area --light panel -t soft --line 330,240,300,300 --out out/profile"
     )]
@@ -410,6 +410,17 @@ pub(super) enum OracleChoice {
     Mitsuba,
     /// The exact ray core, and Mitsuba beside it
     Both,
+}
+
+impl OracleChoice {
+    /// As a command line says it; nothing for the default.
+    pub(super) fn option(self) -> &'static str {
+        match self {
+            Self::Exact => "",
+            Self::Mitsuba => " --oracle mitsuba",
+            Self::Both => " --oracle both",
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]

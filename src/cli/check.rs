@@ -89,8 +89,12 @@ impl Session<'_> {
         task: &Task<'_>,
         subject: &Subject<'_>,
     ) -> anyhow::Result<Run> {
-        let asked =
-            report::question(view.scene, task.light, &task.spec, subject.check(self.args.jitter, self.args.motion));
+        let asked = report::question(
+            view.scene,
+            task.light,
+            &task.spec,
+            subject.check(self.args.jitter, self.args.motion) + self.args.oracle.option(),
+        );
         let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
             let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
             let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;

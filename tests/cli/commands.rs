@@ -145,6 +145,7 @@ fn doctor_names_the_adapter_and_its_limits() {
         "GNOMON_ADAPTER",
         "largest map",
         "oracle exact",
+        "oracle mitsuba",
     ]);
 }
 

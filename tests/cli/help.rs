@@ -3,7 +3,9 @@
 use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 18] = [
+    "profile",
+    "compare-render",
     "check",
     "compare",
     "sweep",

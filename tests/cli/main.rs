@@ -13,6 +13,7 @@ mod hostile;
 mod html;
 #[cfg(unix)]
 mod interrupted;
+mod oracle;
 mod refused;
 mod schema;
 mod specs;
