@@ -49,6 +49,14 @@ pub(super) enum Command {
         gnomon render scenes/torus --light lamp --show volumes -o volumes.png\n  \
         gnomon render scenes/torus -t volume --pipeline darkening --darkening 0.6 -o dark.png")]
     Render(RenderArgs),
+    /// Measure a technique's shadow along a line of the picture: penumbra widths, CSV and plot
+    #[command(
+        after_help = "Example:\n  gnomon profile scenes/area --light panel -t soft --line 330,240,300,300 --out out/profile"
+    )]
+    Profile(ProfileArgs),
+    /// Compare our pictures of a scene with Mitsuba's, radiance by radiance
+    #[command(after_help = "Example:\n  gnomon compare-render scenes/room -t map:size=2048 --out out/compare")]
+    CompareRender(CompareRenderArgs),
     /// Write the exact visibility of a light as an image
     #[command(after_help = "Example:\n  gnomon truth scenes/torus --light lamp -o truth.png")]
     Truth(TruthArgs),
@@ -271,6 +279,33 @@ impl Show {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct ProfileArgs {
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    /// Technique
+    #[arg(short, long, value_name = "SPEC")]
+    pub(super) technique: String,
+    /// First and last pixel, from the top left
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = line)]
+    pub(super) line: [UVec2; 2],
+    /// Write profile.csv and profile.svg here
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareRenderArgs {
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    /// Technique whose shadows to compare as well; the exact ones always are
+    #[arg(short, long, value_name = "SPEC")]
+    pub(super) technique: Vec<String>,
+    /// Write compare.json and the pictures as EXR here
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct TruthArgs {
     #[command(flatten)]
     pub(super) scene: SceneArgs,
@@ -393,6 +428,14 @@ fn shard(typed: &str) -> Result<Shard, String> {
 
 fn pixel(typed: &str) -> Result<UVec2, String> {
     pair(typed, ',').ok_or_else(|| format!("'{typed}' is not like 512,400"))
+}
+
+fn line(typed: &str) -> Result<[UVec2; 2], String> {
+    let numbers: Option<Vec<u32>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([x0, y0, x1, y1]) => Ok([UVec2::new(*x0, *y0), UVec2::new(*x1, *y1)]),
+        _ => Err(format!("'{typed}' is not like 100,200,300,200")),
+    }
 }
 
 fn pair(typed: &str, separator: char) -> Option<UVec2> {

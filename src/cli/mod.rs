@@ -8,6 +8,7 @@ mod check;
 mod columns;
 mod command;
 mod compare;
+mod compare_render;
 mod context;
 mod diagnose;
 mod doctor;
@@ -21,6 +22,7 @@ mod masks;
 mod matrix;
 mod output;
 mod pictures;
+mod profile;
 mod render;
 mod report;
 mod scaffold;
@@ -53,6 +55,8 @@ pub fn main() -> ExitCode {
         Command::Advise(args) => advise::run(&args, &terminal),
         Command::BenchPublished(args) => bench_published::run(&args, &terminal),
         Command::Render(args) => render::run(&args, &terminal),
+        Command::Profile(args) => profile::run(&args, &terminal),
+        Command::CompareRender(args) => compare_render::run(&args, &terminal),
         Command::Truth(args) => masks::truth(&args, &terminal),
         Command::Mask(args) => masks::mask(&args, &terminal),
         Command::Judge(args) => judge::run(&args, &terminal),

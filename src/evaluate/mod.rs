@@ -10,6 +10,7 @@ mod faults;
 mod jitter;
 mod motion;
 mod occluders;
+mod profile;
 mod view;
 
 pub use cost::time_in_turn;
@@ -17,6 +18,7 @@ pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bia
 pub use jitter::jittered;
 pub use motion::{Flips, STEP_PX, flips};
 pub use occluders::occluders;
+pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
 pub use view::{Oracle, Question, TruthStore, View};
 
 use crate::cause::Replay;

@@ -11,6 +11,7 @@ pub mod html;
 pub mod mask_image;
 pub mod model;
 pub mod picture;
+pub mod profile;
 mod summary;
 pub mod table;
 
