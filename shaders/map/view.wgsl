@@ -11,8 +11,9 @@ struct View {
     selector: vec4f,
     // +1 where depth grows away from the light, -1 where it shrinks.
     depth_sign: f32,
-    // Three scalars: a vector would be aligned to 16 bytes.
-    padding: array<u32, 3>,
+    // How fast it is blended in before the projection would select it, per metre; 0 where it is not.
+    blend_per_m: f32,
+    padding: vec2u,
 }
 
 // Where a world point lies in a view.

@@ -29,6 +29,7 @@ const FAULTS: &[Fault] = &[
         "map",
     ),
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
+    ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),

@@ -11,11 +11,11 @@
 use super::scenes::folder_of;
 use glam::UVec2;
 use gnomon::cause::Cause;
-use gnomon::evaluate::{Effort, Evaluation, Question, View, evaluate};
+use gnomon::evaluate::{Effort, EvaluateError, Evaluation, Question, View, evaluate};
 use gnomon::gpu::Gpu;
 use gnomon::mask::Truth;
 use gnomon::scene::{LoadOptions, Scene, SceneError, load};
-use gnomon::technique::Spec;
+use gnomon::technique::{Spec, TechniqueError};
 use gnomon::watch::Unwatched;
 use std::sync::LazyLock;
 
@@ -53,9 +53,13 @@ impl<'s> Shot<'s> {
         }
     }
 
-    /// Whether a technique answers for this light at all.
-    pub(crate) fn supports(&self, spec: &Spec) -> bool {
-        spec.technique().supports(spec, self.view.scene, self.question.light, &GPU).is_ok()
+    /// What a technique answers; `None` if it does not for this light.
+    pub(crate) fn evaluate_if_supported(&self, spec: &Spec) -> Option<Evaluation<'_>> {
+        match evaluate(&self.view, &self.question, spec, Effort::CAUSES, &Unwatched) {
+            Ok(evaluation) => Some(evaluation),
+            Err(EvaluateError::Technique(TechniqueError::Unsupported(_))) => None,
+            Err(error) => panic!("{}: {error}", spec.short()),
+        }
     }
 
     /// The pixels that are asked and decided.

@@ -379,8 +379,17 @@ mod tests {
                 float_step,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
-            let in_rust =
-                rust_layout!(GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, padding });
+            let in_rust = rust_layout!(GpuView {
+                u_row,
+                v_row,
+                q_row,
+                depth_row,
+                depth_q_row,
+                selector,
+                depth_sign,
+                blend_per_m,
+                padding
+            });
             assert_eq!(wgsl_layout(&files, "View"), in_rust, "{label}");
         }
     }

@@ -72,7 +72,7 @@ impl Technique for Map {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedMap::new(Settings::of(spec), job, None)?))
+        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job, None)?))
     }
 }
 
@@ -183,7 +183,7 @@ pub(in crate::technique) fn bias_params() -> Vec<Param> {
 
 /// A map with the casters' silhouettes, whose edges are given, ready to run.
 pub(in crate::technique) fn prepare_with_silhouettes<'j>(
-    settings: Settings,
+    settings: &Settings,
     job: Job<'j>,
     edges_in_world: &[[glam::DVec3; 2]],
 ) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
@@ -241,6 +241,7 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "what stands for the map beyond its border",
         ),
     ]);
+    params.extend(projection::params());
     params.extend(fit_params());
     params
 });

@@ -24,19 +24,19 @@ pub(super) struct PreparedMap<'j> {
 impl<'j> PreparedMap<'j> {
     /// With the edges of the casters' silhouettes for a map that draws them.
     pub(super) fn new(
-        settings: Settings,
+        settings: &Settings,
         job: Job<'j>,
         silhouettes: Option<&[[DVec3; 2]]>,
     ) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let views = settings.projection.fit(job.scene, job.light, &settings, &visible)?;
-        let lookup = Lookup::new(views, &settings, job.light);
+        let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
+        let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = MapPasses::new(job.gpu, &settings, &lookup, &receivers, silhouettes)?;
+        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
-        Ok(Self { job, settings, lookup, passes, receivers, scene_radius_m, silhouettes })
+        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m, silhouettes })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {

@@ -32,6 +32,8 @@ pub struct Settings {
     pub seam: Seam,
     /// What stands for the map beyond its border.
     pub border: Border,
+    /// What only some projections read.
+    pub knobs: projection::Knobs,
 }
 
 /// What happens to casters before the near plane.
@@ -160,6 +162,7 @@ impl Settings {
                 "clamp-edge" => Border::ClampEdge,
                 _ => Border::Lit,
             },
+            knobs: projection::Knobs::of(spec),
         }
     }
 
@@ -181,6 +184,7 @@ impl Settings {
             caster_sides: CasterSides::All,
             seam: Seam::PerTap,
             border: Border::Lit,
+            knobs: projection::Knobs::default(),
         }
     }
 

@@ -54,7 +54,7 @@ impl Technique for ProjectiveTexture {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedPicture::new(Settings::of(spec), job)?))
+        Ok(Box::new(prepared::PreparedPicture::new(&Settings::of(spec), job)?))
     }
 }
 

@@ -20,14 +20,14 @@ pub(super) struct PreparedPicture<'j> {
 }
 
 impl<'j> PreparedPicture<'j> {
-    pub(super) fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+    pub(super) fn new(settings: &Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
         let views = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
         let lookup = Lookup::new(views, &settings.map, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = PicturePasses::new(&job, &settings, &lookup, &receivers)?;
-        Ok(Self { job, settings, lookup, passes, receivers })
+        let passes = PicturePasses::new(&job, settings, &lookup, &receivers)?;
+        Ok(Self { job, settings: *settings, lookup, passes, receivers })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {

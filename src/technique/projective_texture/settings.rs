@@ -53,6 +53,7 @@ impl Settings {
             caster_sides: CasterSides::All,
             seam: Seam::PerTap,
             border: Border::Lit,
+            knobs: projection::Knobs::default(),
         };
         let receivers = match spec.choice("receivers").0 {
             "all" => ReceiverChoice::All,

@@ -62,7 +62,7 @@ impl Technique for Silhouette {
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         let edges = edges::silhouette_edges(job.scene, job.light);
-        map::prepare_with_silhouettes(Settings::with_silhouettes(spec), job, &edges)
+        map::prepare_with_silhouettes(&Settings::with_silhouettes(spec), job, &edges)
     }
 }
 

@@ -89,6 +89,7 @@ impl LightFrustum {
             rows: Rows::of_clip(&clip_from_world),
             clip_from_world: clip_from_world.as_mat4(),
             selector: Vec4::ZERO,
+            blend_per_m: 0.0,
             depth_sign: if self.reversed { -1.0 } else { 1.0 },
             texels: self.texels,
         }

@@ -4,16 +4,23 @@
 //! Adding one: a file here, a WGSL file of the same stem in `shaders/map/projection/` that defines `select_views` unless
 //! there is one view only, a line in [`registry`].
 
+mod body;
+mod cascaded;
 mod clip;
 mod cube;
 mod fit;
 mod frustum;
 mod homogeneous;
+mod knobs;
+mod light_space_perspective;
+mod perspective;
 mod single;
 mod site;
+mod trapezoidal;
 mod view;
 
 pub use frustum::{LightFrustum, Shape, Window};
+pub use knobs::{Knobs, params};
 pub use site::Site;
 pub(in crate::technique) use view::GpuView;
 pub use view::{Gradients, InMap, Layout, Rows, View};
@@ -27,7 +34,14 @@ use glam::DVec3;
 /// Every projection.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Projection] {
-    &[&single::Single, &cube::Cube]
+    &[
+        &single::Single,
+        &cube::Cube,
+        &cascaded::Cascaded,
+        &perspective::Perspective,
+        &trapezoidal::Trapezoidal,
+        &light_space_perspective::LightSpacePerspective,
+    ]
 }
 
 /// `select_views` of projections with one view.

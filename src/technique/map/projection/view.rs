@@ -75,6 +75,8 @@ pub struct View {
     pub clip_from_world: Mat4,
     /// What the projection selects views by; each projection says what it holds.
     pub selector: Vec4,
+    /// How fast it is blended in before the projection would select it, per metre; 0 where it is not.
+    pub blend_per_m: f32,
     /// +1 where depth grows away from the light, −1 where it shrinks.
     pub depth_sign: f64,
     /// Width and height in texels, the same for every view of a map.
@@ -105,6 +107,12 @@ pub(super) fn apply(row: Vec4, point_in_world: DVec3) -> f64 {
 }
 
 impl View {
+    /// The same view with another projection to clip space, computed in f64 and rounded here.
+    #[must_use]
+    pub fn of_clip(view: Self, clip_from_world: &DMat4, depth_sign: f64) -> Self {
+        Self { rows: Rows::of_clip(clip_from_world), clip_from_world: clip_from_world.as_mat4(), depth_sign, ..view }
+    }
+
     /// Where a world point lies.
     #[must_use]
     pub fn project(&self, point_in_world: DVec3) -> InMap {
@@ -164,11 +172,11 @@ impl View {
     /// As the shaders read it.
     pub(in crate::technique) fn gpu(&self) -> GpuView {
         let Rows { u, v, q, depth, depth_q } = self.rows;
-        let padding = [0; 3];
+        let padding = [0; 2];
         let [u_row, v_row, q_row, depth_row, depth_q_row] = [u, v, q, depth, depth_q].map(|row| row.to_array());
         let selector = self.selector.to_array();
-        let depth_sign = self.depth_sign as f32;
-        GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, padding }
+        let (depth_sign, blend_per_m) = (self.depth_sign as f32, self.blend_per_m);
+        GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, blend_per_m, padding }
     }
 }
 
@@ -183,5 +191,6 @@ pub(in crate::technique) struct GpuView {
     pub(in crate::technique) depth_q_row: [f32; 4],
     pub(in crate::technique) selector: [f32; 4],
     pub(in crate::technique) depth_sign: f32,
-    pub(in crate::technique) padding: [u32; 3],
+    pub(in crate::technique) blend_per_m: f32,
+    pub(in crate::technique) padding: [u32; 2],
 }

@@ -1,0 +1,191 @@
+//! `cascaded`: the depth range of what is seen is split into slices, and each has an orthographic view of its own.
+//!
+//! F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-Split Shadow Maps for Large-scale Virtual Environments", 2006; W. Engel,
+//! "Cascaded Shadow Maps", 2006. Assumes a light infinitely far away. Known failures: steps of resolution at the splits
+//! (`blend_texels` hides them); a tight fit crawls when the camera moves, a stable one wastes texels around its slice.
+
+use super::fit::{LEAST_WIDTH, Reach, look};
+use super::{LightFrustum, Projection, Shape, Shares, View, Window, single};
+use crate::gpu::shader::{Wgsl, wgsl};
+use crate::scene::{Light, LightKind, Scene};
+use crate::technique::Unsupported;
+use crate::technique::map::settings::{Around, Fit, Settings};
+use glam::{DVec2, DVec3, UVec2};
+
+/// One to eight views.
+#[derive(Debug)]
+pub(super) struct Cascaded;
+
+/// A stable radius is rounded up to this share of itself, so that rounding never changes it.
+const RADIUS_STEP: f64 = 1.0 / 64.0;
+
+/// A part of what the camera sees, by distance along its axis, metres.
+#[derive(Debug, Clone, Copy)]
+struct Slice {
+    from_m: f64,
+    to_m: f64,
+}
+
+impl Projection for Cascaded {
+    fn name(&self) -> &'static str {
+        "cascaded"
+    }
+
+    fn shader(&self) -> Wgsl {
+        wgsl!("map/projection/cascaded.wgsl")
+    }
+
+    fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
+        direction(light).map(|_| ())
+    }
+
+    fn fit(
+        &self,
+        scene: &Scene,
+        light: &Light,
+        settings: &Settings,
+        visible: &[DVec3],
+    ) -> Result<Vec<View>, Unsupported> {
+        let travel = direction(light)?;
+        let knobs = &settings.knobs;
+        let eye = scene.camera.eye.as_dvec3();
+        let forward = forward(scene);
+        let distance = |point: DVec3| forward.dot(point - eye);
+        let everything = scene.bounds().corners();
+        let seen = if visible.is_empty() { &everything[..] } else { visible };
+        let near_m = scene.camera.near_m;
+        let farthest_m = seen.iter().map(|point| distance(*point)).fold(near_m, f64::max);
+        let far_m = knobs.max_distance_m.unwrap_or(farthest_m).max(near_m * (1.0 + LEAST_WIDTH));
+        let ends = splits(knobs.cascades, knobs.lambda, near_m, far_m);
+        let mut views: Vec<View> = Vec::new();
+        for (i, ends) in ends.windows(2).enumerate() {
+            let slice = Slice { from_m: ends[0], to_m: ends[1] };
+            let frustum = if knobs.is_stable {
+                around_sphere(scene, light, settings, travel, slice)?
+            } else {
+                let is_in = |point: &&DVec3| (slice.from_m..=slice.to_m).contains(&distance(**point));
+                let receivers: Vec<DVec3> = seen.iter().filter(is_in).copied().collect();
+                let fit = Fit { around: Around::Receivers, ..settings.fit };
+                single::frustum(scene, light, &Settings { fit, ..*settings }, &receivers)?
+            };
+            let view = frustum.view(&format!("cascade {i} ({:.3} m to {:.3} m)", slice.from_m, slice.to_m));
+            let band_m = views.last().map_or(0.0, |before| knobs.blend_texels * texel_m(before));
+            let starts = forward.extend(-forward.dot(eye) - slice.from_m);
+            views.push(View {
+                selector: if knobs.selects_by_projection { glam::Vec4::ZERO } else { starts.as_vec4() },
+                blend_per_m: if band_m > 0.0 { (1.0 / band_m) as f32 } else { 0.0 },
+                ..view
+            });
+        }
+        Ok(views)
+    }
+
+    fn select(&self, views: &[View], point_in_world: DVec3) -> Shares {
+        if views[0].selector == glam::Vec4::ZERO {
+            let holds = |view: &View| {
+                let at = view.project(point_in_world);
+                at.uv.min_element() >= 0.0 && at.uv.max_element() < 1.0 && (0.0..=1.0).contains(&at.depth)
+            };
+            return Shares::one(views.iter().position(holds).unwrap_or(views.len() - 1));
+        }
+        let past = |view: &View| view.selector.as_dvec4().dot(point_in_world.extend(1.0));
+        let own = views.iter().skip(1).take_while(|view| past(view) >= 0.0).count();
+        let next = views.get(own + 1).map_or(0.0, |next| 1.0 + past(next) * f64::from(next.blend_per_m));
+        match views.get(own + 1) {
+            Some(view) if view.blend_per_m > 0.0 && next > 0.0 => {
+                Shares { first: own, second: own + 1, second_weight: next }
+            }
+            _ => Shares::one(own),
+        }
+    }
+}
+
+fn direction(light: &Light) -> Result<DVec3, Unsupported> {
+    match light.kind {
+        LightKind::Directional { towards_light } => Ok(-towards_light.as_dvec3().normalize()),
+        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional lights" }),
+    }
+}
+
+/// The camera's axis.
+pub(super) fn forward(scene: &Scene) -> DVec3 {
+    -scene.camera.view_from_world().row(2).truncate()
+}
+
+/// Width of a texel of an orthographic view, metres.
+fn texel_m(view: &View) -> f64 {
+    view.site(DVec3::ZERO).texel_m().max_element()
+}
+
+/// Where slices begin and end: a mean of uniform and logarithmic splits.
+fn splits(count: u32, lambda: f64, near_m: f64, far_m: f64) -> Vec<f64> {
+    let split = |i: u32| {
+        let share = f64::from(i) / f64::from(count);
+        lambda * near_m * (far_m / near_m).powf(share) + (1.0 - lambda) * (near_m + (far_m - near_m) * share)
+    };
+    (0..=count).map(split).collect()
+}
+
+/// Distance of the centre and radius of the smallest sphere on the camera's axis around a slice, from its ends and the
+/// field of view alone.
+fn sphere_around(slice: Slice, tangents: DVec2) -> (f64, f64) {
+    let (a, b, k2) = (slice.from_m, slice.to_m, tangents.length_squared());
+    let centre = (0.5 * (a + b) * (1.0 + k2)).min(b);
+    (centre, ((b - centre).powi(2) + b * b * k2).sqrt())
+}
+
+/// The view around a slice's sphere. Its texels lie on a grid that is fixed in the world.
+fn around_sphere(
+    scene: &Scene,
+    light: &Light,
+    settings: &Settings,
+    travel: DVec3,
+    slice: Slice,
+) -> Result<LightFrustum, Unsupported> {
+    let size = scene.image_size.as_dvec2();
+    let tan_y = (0.5 * scene.camera.fov_y_rad).tan();
+    let (centre_m, radius_m) = sphere_around(slice, DVec2::new(tan_y * size.x / size.y, tan_y));
+    // Up to a power of two times a multiple of the step: the same for every camera.
+    let step = RADIUS_STEP * radius_m.log2().floor().exp2();
+    let radius_m = (radius_m / step).ceil() * step;
+    let light_view_from_world = look(DVec3::ZERO, travel);
+    let centre = scene.camera.eye.as_dvec3() + centre_m * forward(scene);
+    let in_view = light_view_from_world.transform_point3(centre).truncate();
+    let texels = UVec2::splat(settings.size);
+    let around = Window::square(radius_m).with_rim(texels, settings.rim_texels(), 0.0, DVec2::ZERO);
+    let texel = (around.max - around.min) / texels.as_dvec2();
+    let moved = (in_view / texel).floor() * texel + settings.fit.phase_texels * texel;
+    let window = Window { min: around.min + moved, max: around.max + moved };
+    let reach = Reach::within(scene, &light_view_from_world, Shape::Parallel, window).unwrap_or_default();
+    let (near_m, far_m) = settings.fit.planes_m(reach.planes(light, Shape::Parallel, settings))?;
+    let (shape, reversed) = (Shape::Parallel, settings.reversed);
+    Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, texels })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn splits_are_those_of_the_formula() {
+        let close = |lambda: f64, expected: [f64; 5]| {
+            let found = splits(4, lambda, 0.1, 100.0);
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 5e-4 * b), "{found:?}");
+        };
+        close(0.5, [0.1, 12.819, 26.606, 46.404, 100.0]);
+        close(1.0, [0.1, 0.5623, 3.162, 17.78, 100.0]);
+        close(0.0, [0.1, 25.075, 50.05, 75.025, 100.0]);
+    }
+
+    #[test]
+    fn the_sphere_holds_its_slice_and_touches_it() {
+        let tangents = DVec2::new(0.9, 0.5);
+        for (from_m, to_m) in [(0.1, 0.5), (3.0, 18.0), (99.0, 100.0)] {
+            let (centre, radius) = sphere_around(Slice { from_m, to_m }, tangents);
+            let corner =
+                |distance: f64| ((distance - centre).powi(2) + distance * distance * tangents.length_squared()).sqrt();
+            let farthest = corner(from_m).max(corner(to_m));
+            assert!((farthest - radius).abs() < 1e-12 * radius, "{farthest} {radius}");
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The parameters that only some projections read, declared and read in one place.
+
+use crate::technique::Spec;
+use crate::technique::param::{Choice, Kind, Param, Value};
+
+/// What the projections' own parameters are set to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knobs {
+    /// `cascaded`: how many.
+    pub cascades: u32,
+    /// `cascaded`: 0 uniform splits, 1 logarithmic ones.
+    pub lambda: f64,
+    /// `cascaded`: end of the last one, metres before the eye; `None`: the farthest receiver.
+    pub max_distance_m: Option<f64>,
+    /// `cascaded`: whether each encloses its slice in a sphere and keeps to the texel grid, so that it is stable.
+    pub is_stable: bool,
+    /// `cascaded`: whether a receiver reads the first one that contains it, not the one of its depth.
+    pub selects_by_projection: bool,
+    /// `cascaded`: width of the band before a split in which two are blended, texels.
+    pub blend_texels: f64,
+    /// `perspective`: how far the virtual eye stands behind the eye, metres; `None`: as far as needed.
+    pub virtual_back_m: Option<f64>,
+    /// `trapezoidal`: share of the trapezoid's height that is in focus.
+    pub focus_fraction: f64,
+    /// `trapezoidal`: where the focus ends in the map, −1 the far side, 1 the near one.
+    pub focus_at: f64,
+    /// `light-space-perspective`: factor on the optimal near distance of the warp.
+    pub n_opt_scale: f64,
+    /// `light-space-perspective`: smallest angle between view and light that is warped, radians.
+    pub min_angle_rad: f64,
+}
+
+impl Default for Knobs {
+    fn default() -> Self {
+        Self {
+            cascades: 4,
+            lambda: 0.5,
+            max_distance_m: None,
+            is_stable: true,
+            selects_by_projection: false,
+            blend_texels: 0.0,
+            virtual_back_m: None,
+            focus_fraction: 0.3,
+            focus_at: -0.6,
+            n_opt_scale: 1.0,
+            min_angle_rad: 1.0_f64.to_radians(),
+        }
+    }
+}
+
+impl Knobs {
+    /// Reads them from a `map` specification.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Self {
+        Self {
+            cascades: spec.integer("cascades") as u32,
+            lambda: spec.real("lambda"),
+            max_distance_m: spec.real_or_auto("max_distance_m"),
+            is_stable: spec.choice("cascade_fit").0 == "sphere",
+            selects_by_projection: spec.choice("selection").0 == "by-projection",
+            blend_texels: spec.real("blend_texels"),
+            virtual_back_m: spec.real_or_auto("virtual_back_m"),
+            focus_fraction: spec.real("focus_fraction"),
+            focus_at: spec.real("focus_at"),
+            n_opt_scale: spec.real("n_opt_scale"),
+            min_angle_rad: spec.real("min_angle_deg").to_radians(),
+        }
+    }
+}
+
+/// Far beyond any scene f32 can hold with useful precision.
+const MAX_M: f64 = 1e12;
+
+/// Their declarations.
+#[must_use]
+pub fn params() -> Vec<Param> {
+    let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
+    let real = |min, max| Kind::Real { min, max, auto: false };
+    let auto = |min, max| Kind::Real { min, max, auto: true };
+    let plain = |names: [&'static str; 2]| Kind::Choice(names.into_iter().map(Choice::plain).collect());
+    vec![
+        param("cascades", "", Kind::Integer { min: 1, max: 8 }, Value::Integer(4), "cascaded: how many"),
+        param("lambda", "", real(0.0, 1.0), Value::Real(0.5), "cascaded: 0 uniform splits, 1 logarithmic ones"),
+        param(
+            "max_distance_m",
+            "m",
+            auto(1e-12, MAX_M),
+            Value::Auto,
+            "cascaded: where the last one ends; auto: at the farthest receiver",
+        ),
+        param(
+            "cascade_fit",
+            "",
+            plain(["sphere", "box"]),
+            Value::Choice("sphere", None),
+            "cascaded: sphere around the slice, snapped to whole texels (stable), or box around its receivers (tight)",
+        ),
+        param(
+            "selection",
+            "",
+            plain(["by-depth", "by-projection"]),
+            Value::Choice("by-depth", None),
+            "cascaded: the one of the receiver's depth, or the first that contains it",
+        ),
+        param(
+            "blend_texels",
+            "texels",
+            real(0.0, 64.0),
+            Value::Real(0.0),
+            "cascaded: band before a split in which two are blended",
+        ),
+        param(
+            "virtual_back_m",
+            "m",
+            auto(0.0, MAX_M),
+            Value::Auto,
+            "perspective: how far the virtual eye stands behind the eye; auto: until every caster is before it",
+        ),
+        param(
+            "focus_fraction",
+            "",
+            real(0.01, 0.79),
+            Value::Real(0.3),
+            "trapezoidal: share of the trapezoid's height that is in focus",
+        ),
+        param(
+            "focus_at",
+            "",
+            real(-0.9, 0.0),
+            Value::Real(-0.6),
+            "trapezoidal: where the focus ends in the map, -1 at its far side",
+        ),
+        param(
+            "n_opt_scale",
+            "",
+            real(0.1, 1e6),
+            Value::Real(1.0),
+            "light-space-perspective: factor on the optimal distance of the warp's centre",
+        ),
+        param(
+            "min_angle_deg",
+            "degrees",
+            real(0.0, 90.0),
+            Value::Real(1.0),
+            "light-space-perspective: below this angle between view and light the map is not warped",
+        ),
+    ]
+}
