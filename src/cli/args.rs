@@ -49,7 +49,7 @@ pub(super) enum Command {
         gnomon render scenes/torus --light lamp --show volumes -o volumes.png\n  \
         gnomon render scenes/torus -t volume --pipeline darkening --darkening 0.6 -o dark.png")]
     Render(RenderArgs),
-    /// Measure a technique's shadow along a line of the picture: penumbra widths, CSV and plot
+    /// Measure a technique's shadow along a line of the picture
     #[command(
         after_help = "Example:\n  gnomon profile scenes/area --light panel -t soft --line 330,240,300,300 --out out/profile"
     )]

@@ -3,7 +3,7 @@
 use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 18] = [
     "check",
     "compare",
     "sweep",
@@ -11,6 +11,8 @@ const COMMANDS: [&str; 16] = [
     "advise",
     "bench-published",
     "render",
+    "profile",
+    "compare-render",
     "truth",
     "mask",
     "judge",
