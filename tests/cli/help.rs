@@ -4,8 +4,6 @@ use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
 const COMMANDS: [&str; 18] = [
-    "profile",
-    "compare-render",
     "check",
     "compare",
     "sweep",
@@ -13,6 +11,8 @@ const COMMANDS: [&str; 18] = [
     "advise",
     "bench-published",
     "render",
+    "profile",
+    "compare-render",
     "truth",
     "mask",
     "judge",

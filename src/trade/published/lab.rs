@@ -81,7 +81,7 @@ impl<'l> Lab<'l> {
         }
         let prepared: Vec<&dyn Prepared> = evaluations.iter().flatten().map(|e| e.prepared.as_ref()).collect();
         let mut times = time_in_turn(&prepared, ROUNDS, self.watch)?.into_iter();
-        let sample = |evaluation: &Evaluation<'_>| {
+        let mut sample = |evaluation: &Evaluation<'_>| {
             let causes = Outcome::of(evaluation).wrong_by_cause;
             Sample {
                 ms: times.next().flatten().map(|time| time.median),
@@ -91,7 +91,6 @@ impl<'l> Lab<'l> {
                 main_cause: causes.into_iter().max_by_key(|(_, pixels)| *pixels).map(|(cause, _)| cause),
             }
         };
-        let mut sample = sample;
         Ok(evaluations.iter().map(|evaluation| evaluation.as_ref().map(&mut sample).map_err(String::clone)).collect())
     }
 
