@@ -16,7 +16,7 @@ const SIZE: UVec2 = UVec2::new(80, 60);
 
 /// Every axis, every format, filters of odd and even kernels, sizes far too small and of no power of two, every kind of
 /// bias alone and together, and frusta that cut.
-const SPECS: [&str; 41] = [
+const SPECS: [&str; 42] = [
     "map",
     "map:bias=none",
     "map:size=512,bias=constant",
@@ -39,6 +39,7 @@ const SPECS: [&str; 41] = [
     "map:size=400,bias_depth_m=0.05",
     "map:fit=receivers,size=300",
     "map:fit=manual,filter=pcf-box3",
+    "irregular",
     "map:size=333,near_m=3,far_m=5,phase_u_texels=0.3",
     "map:near_m=0.7,near_mode=depth-clamp,filter=pcf-box3",
     "map:near_mode=fragment-clamp,bias=slope,depth_convention=forward",

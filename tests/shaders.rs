@@ -19,7 +19,10 @@ fn modules() -> Vec<(String, Vec<Wgsl>)> {
 /// Parses and validates one module as WebGPU without optional features would.
 fn validated(text: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    // The one optional feature is asked for by name.
+    let is_of_rays = text.contains("enable wgpu_ray_query;");
+    let capabilities = if is_of_rays { Capabilities::RAY_QUERY } else { Capabilities::empty() };
+    let mut validator = Validator::new(ValidationFlags::all(), capabilities);
     validator.validate(&module).map_err(|error| error.emit_to_string(text))?;
     Ok(module)
 }

@@ -47,7 +47,7 @@ pub(super) enum Command {
     /// Write the scene file that gnomon makes around a bare OBJ, beside it
     #[command(after_help = "Example:\n  gnomon scaffold models/teapot.obj")]
     Scaffold(ScaffoldArgs),
-    /// List the scenes of a folder, or the techniques and their parameters
+    /// List the scenes of a folder, the techniques and their parameters, or the presets
     #[command(after_help = "Examples:\n  gnomon list techniques\n  gnomon list scenes --folder my/scenes\n  \
         gnomon list --matrix")]
     List(ListArgs),
@@ -86,6 +86,9 @@ pub(super) struct CheckArgs {
     /// Shift the light's texel grid N times by sub-texel steps; budgets then bind the mean
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub(super) jitter: u32,
+    /// Move the camera, then the light, by N quarter-pixel steps, and count the pixels that flip though the truth does not
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub(super) motion: u32,
     /// Who answers for the truth; both: exact, and every ray again by Mitsuba
     #[arg(long, value_enum, default_value_t = OracleChoice::Exact)]
     pub(super) oracle: OracleChoice,
@@ -256,6 +259,7 @@ pub(super) enum OracleChoice {
 pub(super) enum Listed {
     Scenes,
     Techniques,
+    Presets,
 }
 
 fn share(typed: &str) -> Result<f64, String> {

@@ -7,10 +7,10 @@ use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
 use super::{exit, pictures, report};
-use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, jittered};
+use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, flips, jittered};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
-use crate::report::model::{Jitter, Report, Run, Status};
+use crate::report::model::{Jitter, Motion, Report, Run, Status};
 use crate::report::table::table;
 use crate::scene::Scene;
 use crate::suggest::hint;
@@ -68,7 +68,7 @@ impl Session<'_> {
             for task in of_light {
                 let subject =
                     Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
-                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter))?;
+                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter, self.args.motion))?;
                 self.runs.push(run);
                 self.deeper.push(subject.diagnose());
             }
@@ -86,9 +86,11 @@ impl Session<'_> {
     ) -> anyhow::Result<Run> {
         let asked = report::question(view.scene, task.light, &task.spec, command);
         let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
-            Ok((evaluation, jittered(view, question, &task.spec, self.args.jitter, self.terminal)?))
+            let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
+            let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;
+            Ok((evaluation, phases, moved))
         });
-        let (evaluation, phases) = match outcome {
+        let (evaluation, phases, moved) = match outcome {
             Ok(outcome) => outcome,
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
                 return Ok(Run::unsupported(asked, why.to_string()));
@@ -103,6 +105,7 @@ impl Session<'_> {
         run.cost = Some(evaluation.cost.clone());
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(&fractions);
+        run.motion = Motion::of(&moved.of_camera, &moved.of_light);
         run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
         if let Some(out) = &self.out {
             pictures::write_run(out, self.runs.len(), view, question, &run, &evaluation)?;

@@ -20,10 +20,10 @@ pub(super) struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Measures it again; `jitter` as in `--jitter`.
-    pub(super) fn check(&self, jitter: u32) -> String {
-        let jitter = if jitter > 0 { format!(" --jitter {jitter}") } else { String::new() };
-        format!("{}{jitter}", self.spelled("check"))
+    /// Measures it again; `jitter` as in `--jitter`, `motion` as in `--motion`.
+    pub(super) fn check(&self, jitter: u32, motion: u32) -> String {
+        let option = |name: &str, count: u32| if count > 0 { format!(" --{name} {count}") } else { String::new() };
+        format!("{}{}{}", self.spelled("check"), option("jitter", jitter), option("motion", motion))
     }
 
     /// Looks for what is wrong.
@@ -96,8 +96,8 @@ mod tests {
     fn a_subject_is_named_in_full() {
         let spec = Spec::parse("map:size=64").unwrap();
         let subject = Subject { scene: Path::new("s"), light: "sun", spec: &spec, size: UVec2::new(64, 48) };
-        assert_eq!(subject.check(0), "gnomon check s -t map:size=64 --light sun --size 64x48");
-        assert_eq!(subject.check(3), "gnomon check s -t map:size=64 --light sun --size 64x48 --jitter 3");
+        assert_eq!(subject.check(0, 0), "gnomon check s -t map:size=64 --light sun --size 64x48");
+        assert_eq!(subject.check(3, 2), "gnomon check s -t map:size=64 --light sun --size 64x48 --jitter 3 --motion 2");
         assert_eq!(subject.explain(65), "gnomon explain s -t map:size=64 --light sun --size 64x48 --pixel 1,1");
         assert!(subject.diagnose().starts_with("gnomon diagnose s"));
     }

@@ -57,7 +57,7 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
                 "best fix tried: {} leaves {} wrong pixels\nnext step: {}\n",
                 fix.short(),
                 outcome.wrong,
-                subject(fix).check(0)
+                subject(fix).check(0, 0)
             ));
         }
     }

@@ -1,17 +1,25 @@
-//! `gnomon list`: the scenes of a folder, the techniques and their parameters, what each handles.
+//! `gnomon list`: the scenes of a folder, the techniques and their parameters, the presets, what each handles.
 
 use super::args::{ListArgs, Listed};
 use super::columns::{columns, paragraph, text};
 use super::terminal::{complain, say};
 use super::{exit, matrix};
 use crate::scene::{self, LoadOptions};
-use crate::technique::{Technique, registry};
+use crate::technique::{PRESETS, Preset, Technique, registry};
 use anyhow::{Context, bail};
 
 pub(super) fn run(args: &ListArgs) -> anyhow::Result<u8> {
     match args.what {
         None => matrix::print()?,
         Some(Listed::Techniques) => registry().iter().for_each(|technique| say(&described(*technique))),
+        Some(Listed::Presets) => {
+            let mut table = columns();
+            for Preset { name, spec, about, is_short_name } in PRESETS {
+                let typed = if is_short_name { name.to_owned() } else { format!("preset:{name}") };
+                table.add_row([typed.as_str(), spec, about]);
+            }
+            say(&text(table, ""));
+        }
         Some(Listed::Scenes) => {
             let folder = &args.folder;
             let entries = std::fs::read_dir(folder)

@@ -8,10 +8,12 @@ mod diagnose;
 #[cfg(test)]
 mod faults;
 mod jitter;
+mod motion;
 mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
+pub use motion::{Flips, STEP_PX, flips};
 pub use view::{Oracle, Question, View};
 
 use crate::cause::Replay;

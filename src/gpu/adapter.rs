@@ -8,7 +8,7 @@ use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Features, Instan
 pub(super) const ADAPTER_VARIABLE: &str = "GNOMON_ADAPTER";
 
 /// Features gnomon uses where the adapter has them; everything works without, or says what is missing.
-pub(super) const WANTED_FEATURES: [(Features, &str); 8] = [
+pub(super) const WANTED_FEATURES: [(Features, &str); 9] = [
     (Features::TIMESTAMP_QUERY, "timestamp-query"),
     (Features::PIPELINE_STATISTICS_QUERY, "pipeline-statistics-query"),
     (Features::DEPTH_CLIP_CONTROL, "depth-clip-control"),
@@ -17,6 +17,7 @@ pub(super) const WANTED_FEATURES: [(Features, &str); 8] = [
     (Features::PRIMITIVE_INDEX, "primitive-index"),
     (Features::FLOAT32_FILTERABLE, "float32-filterable"),
     (Features::CONSERVATIVE_RASTERIZATION, "conservative-rasterization"),
+    (Features::EXPERIMENTAL_RAY_QUERY, "ray-query"),
 ];
 
 /// What reports say about the adapter.

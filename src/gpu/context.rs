@@ -3,7 +3,9 @@
 use super::GpuError;
 use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
 use std::sync::{Arc, Mutex, PoisonError};
-use wgpu::{Device, DeviceDescriptor, Error, ErrorFilter, Features, Limits, MemoryHints, PollType, Queue};
+use wgpu::{
+    Device, DeviceDescriptor, Error, ErrorFilter, ExperimentalFeatures, Features, Limits, MemoryHints, PollType, Queue,
+};
 
 /// An open device and its queue.
 #[derive(Debug)]
@@ -30,6 +32,7 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&DeviceDescriptor {
             label: Some("gnomon"),
             required_features: adapter.features() & wanted,
+            experimental_features: experimental(adapter.features() & wanted),
             required_limits: adapter.limits(),
             memory_hints: MemoryHints::MemoryUsage,
             ..DeviceDescriptor::default()
@@ -93,5 +96,17 @@ impl Gpu {
             }
             None => waited.map(|_| result).map_err(|error| GpuError::Lost { during, why: error.to_string() }),
         }
+    }
+}
+
+/// The token without which wgpu opens no device with experimental features.
+#[allow(unsafe_code, reason = "the one token that wgpu wants for ray queries; see Safety")]
+fn experimental(features: Features) -> ExperimentalFeatures {
+    if features.intersects(Features::all_experimental_mask()) {
+        // Safety: what may be unsound are experimental interfaces used wrongly. Only the ray-query technique uses one, on
+        // buffers that wgpu validates, and only on adapters that have it.
+        unsafe { ExperimentalFeatures::enabled() }
+    } else {
+        ExperimentalFeatures::disabled()
     }
 }

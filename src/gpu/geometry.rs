@@ -46,7 +46,7 @@ impl Geometry {
                     gpu.device.create_buffer_init(&BufferInitDescriptor {
                         label: Some("corners"),
                         contents: bytemuck::cast_slice(&corners),
-                        usage: BufferUsages::VERTEX,
+                        usage: BufferUsages::VERTEX | BufferUsages::STORAGE,
                     })
                 })
             })
@@ -63,7 +63,8 @@ impl Geometry {
         self.corners.as_ref().map_or(0, Buffer::size)
     }
 
-    /// Three corners per triangle, laid out as [`CORNER_LAYOUT`]; `None` for a scene without triangles.
+    /// Three corners per triangle, laid out as [`CORNER_LAYOUT`], for vertex or storage bindings; `None` for a scene
+    /// without triangles.
     pub(crate) fn corners(&self) -> Option<&Buffer> {
         self.corners.as_ref()
     }

@@ -40,7 +40,7 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
-        for line in runs.iter().filter_map(jitter) {
+        for line in runs.iter().flat_map(|run| [jitter(run), motion(run)]).flatten() {
             wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
         }
         text.push('\n');
@@ -76,6 +76,15 @@ fn jitter(run: &Run) -> Option<String> {
         [jitter.wrong_fraction.mean, jitter.wrong_fraction.min, jitter.wrong_fraction.max].map(percent);
     let (typed, phases) = (printable(&run.typed), jitter.phases);
     Some(format!("{typed}  over {phases} texel phases: {mean} wrong on average, {min} to {max}"))
+}
+
+/// How many pixels of a run flip from frame to frame although the truth does not.
+fn motion(run: &Run) -> Option<String> {
+    let motion = run.motion?;
+    let (typed, steps) = (printable(&run.typed), motion.steps);
+    let [camera, light] =
+        [motion.camera_flips, motion.light_flips].map(|flips| format!("{:.1} (at most {})", flips.mean, flips.max));
+    Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
 }
 
 fn heading(runs: &[Run]) -> String {

@@ -2,7 +2,7 @@
 //! table cannot say anything else than the code does.
 
 use super::param::{Kind, Param};
-use super::{Spec, registry};
+use super::{Spec, Unsupported, registry};
 use crate::gpu::Gpu;
 use crate::scene::{Camera, Falloff, Far, Light, LightKind, LightingMode, Material, Mesh, Plane, Scene, Shading};
 use glam::{DVec3, UVec2, Vec3};
@@ -17,7 +17,7 @@ pub struct MatrixRow {
     pub spec: String,
     /// Whether it handles the kind of light of the same place in [`light_kinds`]; if not, why.
     pub handles: Vec<Result<(), String>>,
-    /// What a scene must have for it, of [`needs`]; each was found by taking it away.
+    /// What an adapter and a scene must have for it; each of the scene's was found by taking it away.
     pub needs: Vec<&'static str>,
 }
 
@@ -58,7 +58,11 @@ fn models() -> Vec<Spec> {
 }
 
 fn row(spec: &Spec, gpu: &Gpu) -> MatrixRow {
-    let refusal = |probe: &Probe, light: &Light| spec.technique().supports(spec, &probe.scene, light, gpu).err();
+    // What this adapter lacks is no matter of the scene: it stands among the needs, whatever the adapter.
+    let is_of_scene = |why: &Unsupported| !matches!(why, Unsupported::MissingFeature { .. });
+    let refusal = |probe: &Probe, light: &Light| {
+        spec.technique().supports(spec, &probe.scene, light, gpu).err().filter(is_of_scene)
+    };
     let complete = Probe::complete();
     let of_kind = |light: &Light| refusal(&complete, light).map_or(Ok(()), |why| Err(why.to_string()));
     let handles: Vec<_> = lights(LIGHT_AT).iter().map(of_kind).collect();
@@ -67,7 +71,8 @@ fn row(spec: &Spec, gpu: &Gpu) -> MatrixRow {
         let handled = lights.iter().zip(&handles).filter(|(_, handled)| handled.is_ok());
         handled.map(|(light, _)| light).any(|light| refusal(lacking, light).is_some())
     };
-    let needs = lacking().into_iter().filter(is_missed).map(|(need, _)| need).collect();
+    let of_adapter = spec.technique().needs_of_adapter().iter().copied();
+    let needs = of_adapter.chain(lacking().into_iter().filter(is_missed).map(|(need, _)| need)).collect();
     MatrixRow { spec: spec.short(), handles, needs }
 }
 

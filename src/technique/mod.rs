@@ -7,11 +7,14 @@
 
 mod cost;
 pub mod footprint;
+pub mod irregular;
 pub mod map;
 mod matrix;
 pub mod param;
 pub mod planar;
+mod preset;
 pub mod projective_texture;
+pub mod ray_query;
 mod receiver_buffer;
 mod spec;
 mod unsupported;
@@ -19,6 +22,7 @@ pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
 pub use matrix::{MatrixRow, light_kinds, matrix};
+pub use preset::{PRESETS, Preset};
 pub use receiver_buffer::ReceiverBuffer;
 pub use spec::{Spec, SpecError};
 pub use unsupported::Unsupported;
@@ -39,14 +43,28 @@ use param::Param;
 /// Every technique, in the order in which lists show them.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Technique] {
-    &[&map::Map, &volume::Volume, &planar::Planar, &projective_texture::ProjectiveTexture]
+    &[
+        &map::Map,
+        &volume::Volume,
+        &planar::Planar,
+        &projective_texture::ProjectiveTexture,
+        &irregular::Irregular,
+        &ray_query::RayQuery,
+    ]
 }
 
 /// Every shader module that any technique can build, as label and files.
 #[must_use]
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
-    [map::shader_modules(), volume::shader_modules(), planar::shader_modules(), projective_texture::shader_modules()]
-        .concat()
+    [
+        map::shader_modules(),
+        volume::shader_modules(),
+        planar::shader_modules(),
+        projective_texture::shader_modules(),
+        irregular::shader_modules(),
+        ray_query::shader_modules(),
+    ]
+    .concat()
 }
 
 /// A shadow technique.
@@ -59,6 +77,10 @@ pub trait Technique: Sync {
     fn citation(&self) -> &'static str;
     /// Its parameters, declared once.
     fn params(&self) -> &'static [Param];
+    /// What an adapter must have for it, in words, where not every adapter does.
+    fn needs_of_adapter(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Whether it can answer for this light in this scene on this adapter.
     ///
     /// # Errors

@@ -115,6 +115,11 @@ impl ReceiverBuffer {
 }
 
 impl Chunk {
+    /// Pixel index of each receiver, in order.
+    pub(crate) fn pixels(&self) -> &[u32] {
+        &self.pixels
+    }
+
     /// Dispatches one thread per receiver; shaders find theirs by `shared/receiver.wgsl`.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         let [columns, rows] = workgroups(self.pixels.len());

@@ -1,5 +1,6 @@
 //! Technique specifications: `family:axis=value,axis=value` as typed, and canonically with every parameter spelled out.
 
+use super::preset::{PRESETS, expanded};
 use super::{Technique, registry};
 use crate::suggest::hint;
 use crate::technique::param::{Param, Value};
@@ -18,7 +19,7 @@ pub struct Spec {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
     /// No such family.
-    #[error("unknown technique '{typed}'{hint}; 'gnomon list techniques' shows all")]
+    #[error("unknown technique '{typed}'{hint}; 'gnomon list techniques' and 'gnomon list presets' show all")]
     Family {
         /// What was typed.
         typed: String,
@@ -64,17 +65,16 @@ pub enum SpecError {
 }
 
 impl Spec {
-    /// Reads `family`, `family:key=value,…` in any order of keys; a value in parentheses may hold commas.
+    /// Reads `family`, `family:key=value,…` in any order of keys, or a preset; a value in parentheses may hold commas.
     ///
     /// # Errors
     /// [`SpecError`] says what is wrong and what would be right.
     pub fn parse(typed: &str) -> Result<Self, SpecError> {
         let trimmed = typed.trim();
-        let (family, rest) = trimmed.split_once(':').unwrap_or((trimmed, ""));
-        let technique = registry().iter().copied().find(|t| t.id() == family).ok_or_else(|| SpecError::Family {
-            typed: typed.to_owned(),
-            hint: hint(family, registry().iter().map(|t| t.id())),
-        })?;
+        let preset = expanded(trimmed);
+        let spelled = preset.as_deref().unwrap_or(trimmed);
+        let (family, rest) = spelled.split_once(':').unwrap_or((spelled, ""));
+        let technique = registry().iter().copied().find(|t| t.id() == family).ok_or_else(|| unknown(typed, family))?;
         let params = technique.params();
         let mut values: Vec<(&'static str, Value)> = params.iter().map(|p| (p.name, p.default)).collect();
         let mut seen = Vec::new();
@@ -177,6 +177,18 @@ impl Spec {
     pub fn real(&self, name: &str) -> f64 {
         self.real_or_auto(name).unwrap_or_else(|| unreachable!("{name} has no auto"))
     }
+}
+
+/// What was meant by a family or preset that is none.
+fn unknown(typed: &str, family: &str) -> SpecError {
+    let hint = if family == "preset" {
+        let name = typed.split([':', ',']).nth(1).unwrap_or("");
+        hint(name.trim(), PRESETS.iter().map(|preset| preset.name))
+    } else {
+        let short_names = PRESETS.iter().filter(|preset| preset.is_short_name).map(|preset| preset.name);
+        hint(family, registry().iter().map(|t| t.id()).chain(short_names))
+    };
+    SpecError::Family { typed: typed.to_owned(), hint }
 }
 
 /// Splits at commas outside parentheses.

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// The keys of a run, sorted.
-pub(crate) const RUN_KEYS: [&str; 16] = [
+pub(crate) const RUN_KEYS: [&str; 17] = [
     "budget",
     "causes",
     "command",
@@ -18,6 +18,7 @@ pub(crate) const RUN_KEYS: [&str; 16] = [
     "image",
     "jitter",
     "light",
+    "motion",
     "pixels",
     "scene",
     "status",

@@ -120,6 +120,11 @@ fn add_context(add: &mut Add) {
     add("jitter_wrong_fraction_min", |run| text(run.jitter?.wrong_fraction.min));
     add("jitter_wrong_fraction_max", |run| text(run.jitter?.wrong_fraction.max));
     add("jitter_wrong_fraction_stddev", |run| text(run.jitter?.wrong_fraction.stddev));
+    add("motion_steps", |run| text(run.motion?.steps));
+    add("motion_camera_flips_mean", |run| text(run.motion?.camera_flips.mean));
+    add("motion_camera_flips_max", |run| text(run.motion?.camera_flips.max));
+    add("motion_light_flips_mean", |run| text(run.motion?.light_flips.mean));
+    add("motion_light_flips_max", |run| text(run.motion?.light_flips.max));
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ mod tests {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    const RUN_KEYS: [&str; 16] = [
+    const RUN_KEYS: [&str; 17] = [
         "scene",
         "light",
         "typed",
@@ -53,6 +53,7 @@ mod tests {
         "truth",
         "budget",
         "jitter",
+        "motion",
     ];
 
     #[test]
@@ -60,8 +61,8 @@ mod tests {
         let text = String::from_utf8(to_json(&report()).unwrap()).unwrap();
         assert_eq!(written_keys(&text, 2), ["schema", "tool", "adapter", "runs"]);
         let run_keys = written_keys(&text, 6);
-        assert_eq!(run_keys.len(), 3 * 16, "every run has every key");
-        assert!(run_keys.chunks(16).all(|keys| keys == RUN_KEYS));
+        assert_eq!(run_keys.len(), 3 * 17, "every run has every key");
+        assert!(run_keys.chunks(17).all(|keys| keys == RUN_KEYS));
 
         let run = &parsed(&report())["runs"][0];
         let mut pixel_keys = keys(&run["pixels"]);
@@ -95,6 +96,8 @@ mod tests {
         let budget = json!({"wrong_fraction": 0.001, "mean_abs": null, "met": false, "met_worst_case": false});
         assert_eq!(run["budget"], budget);
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
+        assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
+        assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
     }
 
     #[test]
@@ -102,7 +105,7 @@ mod tests {
         let json = parsed(&report());
         assert_eq!(json["runs"][1]["status"], "unsupported");
         assert_eq!(json["runs"][2]["status"], "failed");
-        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter"] {
+        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion"] {
             assert!(json["runs"][0][key].is_object(), "{key}");
             assert!(json["runs"][1][key].is_null() && json["runs"][2][key].is_null(), "{key}");
         }

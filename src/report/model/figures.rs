@@ -156,16 +156,43 @@ impl Jitter {
     /// The spread of the share of wrong pixels, one sample per phase; `None` without samples.
     #[must_use]
     pub fn of(wrong_fractions: &[f64]) -> Option<Self> {
-        let n = wrong_fractions.len() as f64;
-        let mean = wrong_fractions.iter().sum::<f64>() / n;
-        let variance = wrong_fractions.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
-        let spread = Spread {
+        Some(Self { phases: wrong_fractions.len() as u32, wrong_fraction: Spread::of(wrong_fractions)? })
+    }
+}
+
+impl Spread {
+    /// Of some samples; `None` without any.
+    #[must_use]
+    pub fn of(samples: &[f64]) -> Option<Self> {
+        let n = samples.len() as f64;
+        let mean = samples.iter().sum::<f64>() / n;
+        let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+        Some(Self {
             mean,
-            min: wrong_fractions.iter().copied().reduce(f64::min)?,
-            max: wrong_fractions.iter().copied().reduce(f64::max)?,
+            min: samples.iter().copied().reduce(f64::min)?,
+            max: samples.iter().copied().reduce(f64::max)?,
             stddev: variance.sqrt(),
-        };
-        Some(Self { phases: wrong_fractions.len() as u32, wrong_fraction: spread })
+        })
+    }
+}
+
+/// Shimmering: pixels that flip from one frame to the next although the truth does not, or the other way round.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Motion {
+    /// How many steps were taken of each kind.
+    pub steps: u32,
+    /// Flips per step while the camera moves sideways.
+    pub camera_flips: Spread,
+    /// Flips per step while the light turns about the scene.
+    pub light_flips: Spread,
+}
+
+impl Motion {
+    /// The flips of each step; `None` without steps.
+    #[must_use]
+    pub fn of(camera: &[u64], light: &[u64]) -> Option<Self> {
+        let spread = |counts: &[u64]| Spread::of(&counts.iter().map(|count| *count as f64).collect::<Vec<f64>>());
+        Some(Self { steps: camera.len() as u32, camera_flips: spread(camera)?, light_flips: spread(light)? })
     }
 }
 

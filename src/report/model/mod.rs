@@ -10,7 +10,8 @@ mod run;
 pub(crate) mod tests;
 
 pub use figures::{
-    BudgetOutcome, CauseEntry, Disagreements, EstimateFigures, Jitter, MitsubaFigures, RayRow, Spread, TruthSource,
+    BudgetOutcome, CauseEntry, Disagreements, EstimateFigures, Jitter, MitsubaFigures, Motion, RayRow, Spread,
+    TruthSource,
 };
 pub use run::{Question, Run, Status};
 

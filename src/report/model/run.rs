@@ -1,6 +1,6 @@
 //! One run of a report: a technique's answer for one light of one scene, or why there is none.
 
-use super::figures::{BudgetOutcome, CauseEntry, Jitter, TruthSource};
+use super::figures::{BudgetOutcome, CauseEntry, Jitter, Motion, TruthSource};
 use crate::cause::Cause;
 use crate::technique::Cost;
 use crate::verdict::{ErrorStats, Ledger, PixelCounts, Verdict};
@@ -74,10 +74,12 @@ pub struct Run {
     pub budget: Option<BudgetOutcome>,
     /// The spread over sub-texel shifts of the map; null for one that was not jittered.
     pub jitter: Option<Jitter>,
+    /// What flips from frame to frame as camera and light move; null for a run that did not move.
+    pub motion: Option<Motion>,
 }
 
 impl Run {
-    /// A run with a verdict. Causes, cost, truth, budget and jitter are null until somebody sets them.
+    /// A run with a verdict. Causes, cost, truth, budget, jitter and motion are null until somebody sets them.
     #[must_use]
     pub fn judged(question: Question, verdict: &Verdict) -> Self {
         Self {
@@ -125,6 +127,7 @@ impl Run {
             truth: None,
             budget: None,
             jitter: None,
+            motion: None,
         }
     }
 }

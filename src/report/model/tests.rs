@@ -57,6 +57,7 @@ pub(crate) fn full_run(scene: &str) -> Run {
     });
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
+    run.motion = Motion::of(&[1, 3], &[0, 2]);
     run
 }
 
