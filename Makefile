@@ -33,6 +33,7 @@ demo: setup oracle ## judge three scenes' shadows; report and pictures go to out
 
 test: setup oracle ## format, lints, documentation and every test
 	setup/rust.sh
+	setup/chromium.sh
 	@echo '==> format'
 	$(CARGO) fmt --check
 	@echo '==> lints'

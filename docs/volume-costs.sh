@@ -11,7 +11,7 @@ for scene in torus room pipe bunny kitchen; do
     [ -f "scenes/$scene/$scene.obj" ] || [ -f "scenes/$scene/shell.obj" ] || continue
     "$gnomon" check "scenes/$scene" --light lamp --size 512x384 --format csv --out "$work/$scene" \
         -t volume:count=z-fail -t volume:count=z-pass -t volume:count=mixed -t volume:count=zp-plus \
-        -t volume:extrude=gpu -t volume:caster_sides=all -t volume:shape=per-triangle >"$work/log" 2>&1 || [ $? -eq 1 ]
+        -t volume:extrude=gpu -t volume:extrude=degenerate-quads -t volume:caster_sides=all -t volume:shape=per-triangle >"$work/log" 2>&1 || [ $? -eq 1 ]
 done
 
 python3 - "$work" docs/volume.md <<'PYTHON'

@@ -18,6 +18,7 @@
 //! verdict    (Mask, TruthMask, stages) → Verdict                            (pure functions, no wgpu)
 //! evaluate   technique against truth: answer, cost, verdict and ledger of one run
 //! report     Verdict → json, csv, png                                       (pure: returns bytes, no wgpu)
+//! trade      many configurations: grids, results, what nothing beats        (pure: returns bytes, no wgpu)
 //! cli        the only IO and the only anyhow
 //! ```
 
@@ -34,6 +35,7 @@ pub mod scene;
 pub mod shade;
 mod suggest;
 pub mod technique;
+pub mod trade;
 pub mod truth;
 pub mod verdict;
 pub mod watch;

@@ -112,6 +112,37 @@ fn an_open_caster_with_half_its_triangles_is_named() {
 }
 
 #[test]
+fn the_edges_of_an_open_base_are_named() {
+    let gpu = gpu();
+    // A bell that lies on its side: half a ball, its open base towards the lamp.
+    let mut bell = ball(Vec3::Y, 0.6);
+    let positions = bell.positions.clone();
+    bell.triangles.retain(|corners| corners.iter().any(|v| positions[*v as usize].z < 0.0));
+    let scene = over_floor(&[bell], lamp(Vec3::new(0.3, 3.0, 4.0)), Vec3::new(0.0, 2.5, 5.0), Vec3::Y * 0.5);
+    let view = View::new(&gpu, &scene).unwrap();
+    let question = view.ask(&scene.lights[0], &Unwatched).unwrap();
+    let typed = "volume:caster_sides=light-facing";
+    let forced = run(&view, &question, typed);
+    assert!(forced.wrong_by(Cause::OpenMesh) > 50, "{}", forced.wrong());
+    assert!(forced.wrong() - forced.wrong_by(Cause::OpenMesh) <= FLIPPED);
+
+    let prepared = prepare(&view, question.light, &question.classes, typed);
+    prepared.run().unwrap();
+    let facts = prepared.facts();
+    let (_, named) = facts.iter().find(|(label, _)| label == "open object cast one-sided").unwrap();
+    assert!(named.contains("open edges: edge ") && named.matches(" from (").count() == 8, "{named}");
+    let is_lit_wrongly = |pixel: &u32| forced.verdict.signed_error[*pixel as usize].is_some_and(|error| error > 0.5);
+    let wrong = (0..forced.stencil.len() as u32).find(is_lit_wrongly).unwrap();
+    let facts = prepared.lookup_facts(wrong).unwrap();
+    let (_, blamed) = facts.iter().find(|(label, _)| label == "open mesh").unwrap();
+    assert!(blamed.contains("nearest open edge ") && blamed.contains(" to ("), "{blamed}");
+    let closed = prepare(&view, question.light, &question.classes, "volume");
+    closed.run().unwrap();
+    assert!(closed.facts().iter().all(|(label, _)| label != "open object cast one-sided"));
+    assert!(closed.lookup_facts(wrong).unwrap().iter().all(|(label, _)| label != "open mesh"));
+}
+
+#[test]
 fn a_light_inside_needs_the_right_back_cap_and_both_sides() {
     let gpu = gpu();
     let scene = over_floor(&[ball(Vec3::Y, 0.6)], lamp(Vec3::Y), Vec3::new(0.0, 2.5, 4.0), Vec3::ZERO);
@@ -209,6 +240,45 @@ fn the_stencil_wraps_at_256_and_loses_what_it_clamps() {
 }
 
 #[test]
+fn a_range_mask_leaves_seven_bits_to_count_with() {
+    let gpu = gpu();
+    for (here, counted) in [(127, 127), (128, 0), (130, 2)] {
+        let scene = nested(here, 0);
+        let centre = (scene.image_size.y / 2 * scene.image_size.x + scene.image_size.x / 2) as usize;
+        let run = run_first(&gpu, &scene, "volume:range_mask=on");
+        assert_eq!(run.stencil[centre], counted, "{here}");
+        run.assert_exact("modulo 128");
+        assert_eq!(run.wrong_by(Cause::StencilOverflow) > 100, counted == 0, "{here}");
+    }
+    // Three volumes left and none entered, because the near plane is inside all three.
+    let balls = [0.5, 0.4, 0.3].map(|radius| ball(Vec3::new(0.0, 1.5, 0.0), radius));
+    let scene = over_floor(&balls, lamp(Vec3::Y * 4.0), Vec3::new(0.05, 0.4, 0.0), Vec3::new(3.0, 0.0, 0.4));
+    let run = run_first(&gpu, &scene, "volume:count=z-pass,range_mask=on");
+    run.assert_exact("below zero");
+    assert!(run.stencil.iter().filter(|count| **count == 125).count() > 100);
+}
+
+#[test]
+fn starting_with_the_volumes_around_the_eye_mends_z_pass_where_they_are_the_same_all_over_the_near_plane() {
+    let gpu = gpu();
+    let mut scene = ball_scene(Vec3::new(0.1, 0.4, 0.0), Vec3::new(3.0, 0.0, 0.4));
+    let wrong = |scene: &Scene, typed: &str| {
+        let run = run_first(&gpu, scene, typed);
+        run.assert_exact(typed);
+        assert!(run.wrong() - run.wrong_by(Cause::ClippingNear) <= FLIPPED);
+        run.wrong()
+    };
+    let (zero, eye) = ("volume:count=z-pass", "volume:count=z-pass,stencil_init=eye-count");
+    assert!(wrong(&scene, zero) > 100 && wrong(&scene, eye) <= FLIPPED);
+    // Outside every volume there is nothing to start from.
+    let outside = ball_scene(Vec3::new(2.0, 2.0, 2.0), Vec3::ZERO);
+    assert!(wrong(&outside, eye) <= FLIPPED);
+    // A near plane that the volume's side cuts has no count of its own.
+    (scene.camera.near_m, scene.camera.eye) = (0.3, Vec3::new(0.42, 0.4, 0.0));
+    assert!(wrong(&scene, eye) > 100);
+}
+
+#[test]
 fn the_scissor_changes_no_answer() {
     let gpu = gpu();
     let mut scene = ball_scene(Vec3::new(0.5, 3.0, 5.0), Vec3::ZERO);
@@ -219,5 +289,10 @@ fn the_scissor_changes_no_answer() {
     let cut = run(&view, &question, "volume:scissor=on");
     assert_eq!(whole.mask, cut.mask);
     cut.assert_exact("scissor");
+    for count in ["z-fail", "z-pass", "mixed", "zp-plus"] {
+        let masked = run(&view, &question, &format!("volume:range_mask=on,count={count}"));
+        assert_eq!(whole.mask, masked.mask, "{count}");
+        masked.assert_exact("range mask");
+    }
     assert!(whole.asked() < whole.stencil.len() / 2, "the range matters in this view");
 }

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import blocks, estimate, rays, render, variant
+from . import blocks, estimate, flip, rays, render, variant
 from .blocks import BlockError, Blocks
 from .geometry import Geometry
 
@@ -36,6 +36,8 @@ class Oracle:
                 return self._estimate(job)
             case "render":
                 return self._render(job, path)
+            case "flip":
+                return self._flip(job)
             case task:
                 raise BlockError(f"no such task as {task!r}")
 
@@ -81,6 +83,11 @@ class Oracle:
             share, mean, variance, discrepancy=float(about["discrepancy"]), alpha=float(about["alpha"])
         )
         return blocks.encode({}, {"mean": mean, "variance": variance, "rejected": rejected.astype(np.uint8)})
+
+    @staticmethod
+    def _flip(job: Blocks) -> bytes:
+        theirs = job.array("theirs", "f32", None, None, 3)
+        return blocks.encode(flip.flip(job.array("ours", "f32", *theirs.shape), theirs), {})
 
     def _render(self, job: Blocks, path: Path) -> bytes:
         about = job.about

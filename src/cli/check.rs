@@ -3,6 +3,7 @@
 use super::args::CheckArgs;
 use super::command::Subject;
 use super::context::{ask, load, mitsuba_for, open_gpu};
+use super::imagery::Collector;
 use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
@@ -10,6 +11,7 @@ use super::{exit, pictures, report};
 use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, flips, jittered};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
+use crate::report::html::Imagery;
 use crate::report::model::{Jitter, Motion, Report, Run, Status};
 use crate::report::table::table;
 use crate::scene::Scene;
@@ -25,6 +27,7 @@ struct Session<'a> {
     terminal: &'a Terminal,
     out: Option<OutFolder>,
     runs: Vec<Run>,
+    pixels: Collector,
     /// For every run, the command that looks deeper into it.
     deeper: Vec<String>,
     /// What else was found, in words.
@@ -41,8 +44,9 @@ pub(super) fn run(args: &CheckArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let tasks: Vec<Vec<Task<'_>>> =
         scenes.iter().map(|(path, scene)| tasks(path, scene, &specs, args)).collect::<anyhow::Result<_>>()?;
     let gpu = open_gpu()?;
-    let mut session =
-        Session { args, gpu: &gpu, terminal, out, runs: Vec::new(), deeper: Vec::new(), notes: Vec::new() };
+    let pixels = Collector::new(exporters.iter().any(|exporter| exporter.shows_pixels));
+    let (runs, deeper, notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut session = Session { args, gpu: &gpu, terminal, out, runs, pixels, deeper, notes };
     let ended = scenes.iter().zip(&tasks).try_for_each(|((path, scene), tasks)| {
         session.check_scene(path, scene, tasks).with_context(|| format!("scene '{}'", scene.name))
     });
@@ -65,10 +69,11 @@ impl Session<'_> {
             let (light, oracle) = (of_light[0].light, self.args.oracle);
             let question = ask(&view, light, oracle, mitsuba.as_mut(), self.terminal)?;
             self.notes.extend(report::mitsuba_line(&question).map(|line| format!("{} / {line}", scene.name)));
+            self.pixels.ask(&view, &question)?;
             for task in of_light {
                 let subject =
                     Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
-                let run = self.check_task(&view, &question, task, subject.check(self.args.jitter, self.args.motion))?;
+                let run = self.check_task(&view, &question, task, &subject)?;
                 self.runs.push(run);
                 self.deeper.push(subject.diagnose());
             }
@@ -78,13 +83,14 @@ impl Session<'_> {
 
     /// One run, its pictures written. What a technique cannot do, and what goes wrong with it, is a row of the report.
     fn check_task(
-        &self,
+        &mut self,
         view: &View<'_>,
         question: &Question<'_>,
         task: &Task<'_>,
-        command: String,
+        subject: &Subject<'_>,
     ) -> anyhow::Result<Run> {
-        let asked = report::question(view.scene, task.light, &task.spec, command);
+        let asked =
+            report::question(view.scene, task.light, &task.spec, subject.check(self.args.jitter, self.args.motion));
         let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
             let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
             let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;
@@ -93,12 +99,16 @@ impl Session<'_> {
         let (evaluation, phases, moved) = match outcome {
             Ok(outcome) => outcome,
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
+                self.pixels.add(question, None)?;
                 return Ok(Run::unsupported(asked, why.to_string()));
             }
             Err(error @ (EvaluateError::Interrupted(_) | EvaluateError::Technique(TechniqueError::Interrupted(_)))) => {
                 return Err(error.into());
             }
-            Err(error) => return Ok(Run::failed(asked, error.to_string())),
+            Err(error) => {
+                self.pixels.add(question, None)?;
+                return Ok(Run::failed(asked, error.to_string()));
+            }
         };
         let fractions: Vec<f64> = phases.iter().map(|(_, fraction)| *fraction).collect();
         let mut run = Run::judged(asked, &evaluation.verdict).explained_by(&evaluation.ledger);
@@ -107,6 +117,7 @@ impl Session<'_> {
         run.jitter = Jitter::of(&fractions);
         run.motion = Motion::of(&moved.of_camera, &moved.of_light);
         run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
+        self.pixels.add(question, Some((&evaluation, &subject.explain_some_pixel())))?;
         if let Some(out) = &self.out {
             pictures::write_run(out, self.runs.len(), view, question, &run, &evaluation)?;
         }
@@ -129,7 +140,10 @@ impl Session<'_> {
             return Ok(());
         }
         let report = Report::new(report::adapter(self.gpu), std::mem::take(&mut self.runs));
-        let written = self.out.as_ref().map_or_else(|| Ok(Vec::new()), |out| write(&report, exporters, out));
+        let written = self
+            .out
+            .as_ref()
+            .map_or_else(|| Ok(Vec::new()), |out| write(&report, self.pixels.imagery(), exporters, out));
         let mut text = table(&report, width());
         for note in &self.notes {
             text += &format!("\n{note}");
@@ -143,8 +157,10 @@ impl Session<'_> {
     }
 }
 
-fn write(report: &Report, exporters: &[&Exporter], out: &OutFolder) -> anyhow::Result<Vec<PathBuf>> {
-    let file = |exporter: &&Exporter| out.write(&format!("report.{}", exporter.extension), &(exporter.write)(report)?);
+fn write(report: &Report, imagery: &Imagery, exporters: &[&Exporter], out: &OutFolder) -> anyhow::Result<Vec<PathBuf>> {
+    let file = |exporter: &&Exporter| {
+        out.write(&format!("report.{}", exporter.extension), &(exporter.write)(report, imagery)?)
+    };
     exporters.iter().map(file).collect()
 }
 

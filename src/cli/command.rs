@@ -31,9 +31,14 @@ impl Subject<'_> {
         self.spelled("diagnose")
     }
 
+    /// Explains a pixel, which is still to be named with `--pixel X,Y`.
+    pub(super) fn explain_some_pixel(&self) -> String {
+        self.spelled("explain")
+    }
+
     /// Explains a pixel, given as `y * width + x`.
     pub(super) fn explain(&self, pixel: u32) -> String {
-        format!("{} --pixel {},{}", self.spelled("explain"), pixel % self.size.x, pixel / self.size.x)
+        format!("{} --pixel {},{}", self.explain_some_pixel(), pixel % self.size.x, pixel / self.size.x)
     }
 
     fn spelled(&self, command: &str) -> String {

@@ -25,11 +25,7 @@ pub(super) fn write_run(
     let ledger = &evaluation.ledger;
     let causes = cause_map(&CauseMap { caption: caption(run), classes, truth, ledger })?;
     out.write(&name(run, index, "causes"), &causes)?;
-    let footprints: Vec<Option<Footprint>> = classes
-        .par_iter()
-        .enumerate()
-        .map(|(pixel, class)| evaluation.prepared.footprint(pixel as u32).filter(|_| *class == PixelClass::Asked))
-        .collect();
+    let footprints = footprints(question, evaluation);
     if footprints.iter().any(Option::is_some) {
         let m: Vec<Option<f32>> = footprints.iter().map(|f| f.map(|f| f.m as f32)).collect();
         let texel: Vec<Option<Vec2>> = footprints.iter().map(|f| f.map(|f| f.position_in_texels.as_vec2())).collect();
@@ -38,6 +34,15 @@ pub(super) fn write_run(
         out.write(&name(run, index, "m"), &picture)?;
     }
     Ok(())
+}
+
+/// The footprint of a texel at every asked pixel.
+pub(super) fn footprints(question: &Question<'_>, evaluation: &Evaluation<'_>) -> Vec<Option<Footprint>> {
+    let asked = question.classes.par_iter().enumerate();
+    let footprint = |(pixel, class): (usize, &PixelClass)| {
+        (*class == PixelClass::Asked).then(|| evaluation.prepared.footprint(pixel as u32)).flatten()
+    };
+    asked.map(footprint).collect()
 }
 
 /// Truth, technique and signed error side by side.
@@ -60,8 +65,10 @@ fn caption(run: &Run) -> Caption<'_> {
 }
 
 fn name(run: &Run, index: usize, kind: &str) -> String {
-    let safe = |name: &str| -> String {
-        name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
-    };
-    format!("{}.{}.{index}.{kind}.png", safe(&run.scene), safe(&run.light))
+    format!("{}.{}.{index}.{kind}.png", file_name(&run.scene), file_name(&run.light))
+}
+
+/// A scene's or light's name as part of a file's name, on every file system.
+pub(super) fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
 }

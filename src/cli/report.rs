@@ -65,12 +65,12 @@ fn mitsuba_figures(check: &MitsubaCheck, width: u32) -> model::MitsubaFigures {
         to: ray.segment.to.to_array(),
         blocked: ray.blocked,
         mitsuba: match ray.mitsuba {
-            Verdict::Blocked => "blocked",
-            Verdict::Clear => "lit",
-            Verdict::Contact => "contact",
+            Verdict::Blocked => "blocked".into(),
+            Verdict::Clear => "lit".into(),
+            Verdict::Contact => "contact".into(),
         },
         confirmed: ray.confirmed,
-        reason: ray.reason.name(),
+        reason: ray.reason.name().into(),
         distance_m: ray.reason.distance_m(),
     };
     let estimate = check.estimate.as_ref().map(|estimate| model::EstimateFigures {

@@ -44,6 +44,8 @@ const FAULTS: &[Fault] = &[
     ("planar/shadow.wgsl", "vec4f(position, 1.0)", "vec4f(position, 1.01)", "planar"),
     ("projective_texture/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", PROJECTED),
     ("projective_texture/lookup.wgsl", "uv * lookup.texels", "uv.yx * lookup.texels", PROJECTED),
+    ("silhouette/points.wgsl", "b.uv * texels - 0.5", "b.uv * texels + 0.5", "silhouette:size=64"),
+    ("silhouette/wedges.wgsl", "position_in_texels - 0.5", "position_in_texels", "silhouette:size=64"),
     ("ray_query/shadow.wgsl", "0.0, end, start", "0.0, 0.1 * end, start", "ray-query"),
     (
         "volume/clip.wgsl",
@@ -51,7 +53,10 @@ const FAULTS: &[Fault] = &[
         "eye.clip_from_world * position_in_world.yxzw",
         "volume",
     ),
-    ("volume/extruded.wgsl", "- extrusion.light.xyz", "+ extrusion.light.xyz", "volume:extrude=gpu"),
+    ("volume/extrusion.wgsl", "- extrusion.light.xyz;", "+ extrusion.light.xyz;", "volume:extrude=gpu"),
+    ("volume/extruded.wgsl", "extruded(position_in_world)", "extruded(position_in_world.yxzw)", "volume:extrude=gpu"),
+    ("volume/quads.wgsl", "abs(weight) <= face.copy", "abs(weight) < face.copy", "volume:extrude=degenerate-quads"),
+    ("volume/range.wgsl", "bound.depth, 1.0", "1.0 - bound.depth, 1.0", "volume:range_mask=on"),
     ("volume/given.wgsl", "clipped(position_in_world)", "clipped(position_in_world.yxzw)", "volume:extrude=cpu"),
     (
         "volume/near.wgsl",

@@ -9,12 +9,17 @@ mod diagnose;
 mod faults;
 mod jitter;
 mod motion;
+mod occluders;
+mod profile;
 mod view;
 
+pub use cost::time_in_turn;
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
 pub use motion::{Flips, STEP_PX, flips};
-pub use view::{Oracle, Question, View};
+pub use occluders::occluders;
+pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
+pub use view::{Oracle, Question, TruthStore, View};
 
 use crate::cause::Replay;
 use crate::mask::{Mask, Truth, TruthMask};
@@ -26,7 +31,7 @@ use crate::watch::{Interrupted, Watch};
 /// How thorough an evaluation is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Timed runs after one warm-up; 0 runs once and measures no time.
+    /// Timed runs after the warm-up; 0 runs once and measures no time.
     pub timed_runs: u32,
     /// Whether errors are booked to causes.
     pub explains: bool,
@@ -80,6 +85,14 @@ pub enum EvaluateError {
     Interrupted(#[from] Interrupted),
 }
 
+impl EvaluateError {
+    /// Whether the work was told to stop.
+    #[must_use]
+    pub fn is_interrupt(&self) -> bool {
+        matches!(self, Self::Interrupted(_) | Self::Technique(TechniqueError::Interrupted(_)))
+    }
+}
+
 /// Evaluates one technique.
 ///
 /// # Errors
@@ -91,8 +104,10 @@ pub fn evaluate<'v>(
     effort: Effort,
     watch: &dyn Watch,
 ) -> Result<Evaluation<'v>, EvaluateError> {
-    let prepared = spec.technique().prepare(spec, view.job(question.light, &question.classes))?;
-    let measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
+    let job = view.job(question.light, &question.classes);
+    let (prepared, prepare_ms) = cost::prepared(|| spec.technique().prepare(spec, job))?;
+    let mut measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
+    measured.cost.prepare_ms = Some(prepare_ms);
     let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, wrong_above(question.light))?;
     if watch.interrupted() {
         return Err(Interrupted.into());

@@ -8,7 +8,7 @@ use crate::receiver::{PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::technique::Job;
 use crate::truth::mitsuba::MitsubaCheck;
-use crate::truth::{self, Disagreement, ExactTruth};
+use crate::truth::{self, Disagreement, ExactTruth, TruthKey};
 use crate::watch::{Interrupted, Watch};
 
 /// A scene seen from its camera: all that no light changes.
@@ -68,6 +68,16 @@ impl Question<'_> {
     }
 }
 
+/// Keeps truths between calls of gnomon, as bytes by key.
+pub trait TruthStore {
+    /// The entry of a key, if there is one.
+    fn get(&self, key: &TruthKey) -> Option<Vec<u8>>;
+    /// Keeps an entry; failing to is no error.
+    fn put(&self, key: &TruthKey, entry: &[u8]);
+    /// Told that an entry cannot be used, and why.
+    fn refuse(&self, key: &TruthKey, why: &str);
+}
+
 /// Asked pixels that brute force decides again for each question.
 const CROSS_CHECKED: u32 = 256;
 /// Triangle tests a cross-check may take altogether: about a tenth of a second.
@@ -103,6 +113,51 @@ impl<'s> View<'s> {
         let brute_disagreements =
             truth::cross_check(self.scene, light, &self.receivers, &classes, watch, &truth.mask, samples)?;
         Ok(Question { light, classes, truth, brute_disagreements, mitsuba: None, oracle: Oracle::Exact })
+    }
+
+    /// The same, taken from what earlier calls kept, if it is there and whole; else worked out and kept.
+    ///
+    /// # Errors
+    /// [`Interrupted`] if the user asked to stop.
+    pub fn ask_stored(
+        &self,
+        light: &'s Light,
+        store: &dyn TruthStore,
+        watch: &dyn Watch,
+    ) -> Result<Question<'s>, Interrupted> {
+        let key = self.truth_key(light);
+        match store.get(&key).map(|entry| truth::decode(&key, &entry)) {
+            Some(Ok(truth)) => {
+                let classes = self.receivers.classify(self.scene, light);
+                // Only what brute force agreed with was kept.
+                let brute_disagreements = Vec::new();
+                return Ok(Question {
+                    light,
+                    classes,
+                    truth,
+                    brute_disagreements,
+                    mitsuba: None,
+                    oracle: Oracle::Exact,
+                });
+            }
+            Some(Err(error)) => store.refuse(&key, &error.to_string()),
+            None => {}
+        }
+        let question = self.ask(light, watch)?;
+        if question.brute_disagreements.is_empty()
+            && let Ok(entry) = truth::encode(&key, &question.truth)
+        {
+            store.put(&key, &entry);
+        }
+        Ok(question)
+    }
+
+    /// What the truth about a light depends on.
+    #[must_use]
+    pub fn truth_key(&self, light: &Light) -> TruthKey {
+        let adapter = self.gpu.adapter();
+        let adapter = format!("{} {} {}", adapter.name, adapter.backend, adapter.driver);
+        TruthKey::new(self.scene, light, &self.receivers, &adapter)
     }
 
     /// What a technique is asked about a light, given the class of every pixel.

@@ -4,11 +4,14 @@
 //! [`Report`] is the model that every exporter reads, and its JSON is the file everything else reads. Names of scenes,
 //! lights and meshes come from files of strangers and are escaped by every writer.
 
+pub mod compare;
 pub mod export;
 mod format;
+pub mod html;
 pub mod mask_image;
 pub mod model;
 pub mod picture;
+pub mod profile;
 mod summary;
 pub mod table;
 

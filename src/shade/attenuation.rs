@@ -21,19 +21,19 @@ pub fn incident(light: &Light, mode: LightingMode, point_in_world: DVec3) -> Opt
     incident_from(light, light.homogeneous(), mode, point_in_world).filter(|_| light.reaches(point_in_world))
 }
 
-/// The light of each point of `emitter`, which are those of `light`, in order: together the light's own. Empty where the
-/// light does not shine.
+/// The light of each point of `emitter`, which are those of `light`, with the point's place among them: together the
+/// light's own. Empty where the light does not shine.
 pub fn incidents<'a>(
     light: &'a Light,
     emitter: &'a Emitter,
     mode: LightingMode,
     point_in_world: DVec3,
-) -> impl Iterator<Item = Incident> + 'a {
+) -> impl Iterator<Item = (usize, Incident)> + 'a {
     let points = light.reaches(point_in_world).then(|| emitter.points_for(point_in_world));
     let share = 1.0 / emitter.count() as f64;
-    points.into_iter().flatten().filter_map(move |point| {
+    points.into_iter().flatten().enumerate().filter_map(move |(index, point)| {
         let incident = incident_from(light, point, mode, point_in_world)?;
-        Some(Incident { strength: share * incident.strength, ..incident })
+        Some((index, Incident { strength: share * incident.strength, ..incident }))
     })
 }
 
@@ -158,7 +158,7 @@ mod tests {
     fn irradiance(light: &Light) -> f64 {
         let emitter = Emitter::new(light);
         let incidents = incidents(light, &emitter, LightingMode::Physical, DVec3::ZERO);
-        incidents.map(|incident| incident.strength.x * incident.towards_light.y).sum()
+        incidents.map(|(_, incident)| incident.strength.x * incident.towards_light.y).sum()
     }
 
     #[test]

@@ -65,6 +65,25 @@ pub fn shade(scene: &Scene, receivers: &Receivers, lights: &[(&Light, &Mask)], p
     Picture { size: receivers.size, linear_rgb }
 }
 
+/// Direct light of one area light, each of whose points is seen or not: the picture that a mask's average over the
+/// points can only come near. `seen` says of a pixel what its receiver sees of [`Emitter`]'s points, in order; pixels
+/// without an answer are dark. There is neither ambient light nor emission.
+#[must_use]
+pub fn shade_points(
+    scene: &Scene,
+    receivers: &Receivers,
+    light: &Light,
+    seen: impl Fn(usize) -> Option<Vec<bool>> + Sync,
+) -> Picture {
+    let emitter = Emitter::new(light);
+    let pixel_colour = |(pixel, receiver): (usize, &Option<Receiver>)| {
+        let (Some(receiver), Some(seen)) = (receiver, seen(pixel)) else { return Vec3::ZERO };
+        direct_light_through(scene, receiver, light, &emitter, |point| seen[point]).as_vec3()
+    };
+    let linear_rgb = receivers.pixels.par_iter().enumerate().map(pixel_colour).collect();
+    Picture { size: receivers.size, linear_rgb }
+}
+
 fn material_of<'a>(scene: &'a Scene, receiver: &Receiver) -> &'a Material {
     &scene.materials[scene.triangle_material[receiver.triangle as usize] as usize]
 }
@@ -77,11 +96,25 @@ fn own_colour(scene: &Scene, material: &Material) -> DVec3 {
 /// What one light adds where nothing blocks it. Gouraud shading lights the corners and interpolates their colours (H.
 /// Gouraud, "Continuous Shading of Curved Surfaces", 1971), the others light the point itself.
 fn direct_light(scene: &Scene, receiver: &Receiver, light: &Light, emitter: &Emitter) -> DVec3 {
+    direct_light_through(scene, receiver, light, emitter, |_| true)
+}
+
+/// The same from those of the light's points that are seen.
+fn direct_light_through(
+    scene: &Scene,
+    receiver: &Receiver,
+    light: &Light,
+    emitter: &Emitter,
+    is_seen: impl Fn(usize) -> bool,
+) -> DVec3 {
     let material = material_of(scene, receiver);
     let lit = |point: DVec3, normal: DVec3| {
         let towards_eye = (scene.camera.eye.as_dvec3() - point).normalize_or_zero();
         incidents(light, emitter, scene.mode, point)
-            .map(|incident| incident.strength * reflected(scene, material, normal, incident.towards_light, towards_eye))
+            .filter(|(index, _)| is_seen(*index))
+            .map(|(_, incident)| {
+                incident.strength * reflected(scene, material, normal, incident.towards_light, towards_eye)
+            })
             .sum::<DVec3>()
     };
     match scene.shading {

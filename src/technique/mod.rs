@@ -16,6 +16,8 @@ mod preset;
 pub mod projective_texture;
 pub mod ray_query;
 mod receiver_buffer;
+pub mod silhouette;
+pub mod soft;
 mod spec;
 mod unsupported;
 pub mod volume;
@@ -48,8 +50,10 @@ pub fn registry() -> &'static [&'static dyn Technique] {
         &volume::Volume,
         &planar::Planar,
         &projective_texture::ProjectiveTexture,
+        &silhouette::Silhouette,
         &irregular::Irregular,
         &ray_query::RayQuery,
+        &soft::Soft,
     ]
 }
 

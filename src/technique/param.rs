@@ -1,6 +1,9 @@
 //! Parameters, declared once per technique: from the declaration come parsing, `list`, canonical names, sweeps.
 
+use super::Spec;
+use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::{Mutex, PoisonError};
 
 /// One parameter of a technique.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +41,8 @@ pub enum Kind {
         /// Whether `auto` is legal.
         auto: bool,
     },
+    /// Another technique, in parentheses: `(volume:count=z-fail)`.
+    Technique,
 }
 
 /// One value of a choice; `pcf-box3` is the choice `pcf-box` with the number 3.
@@ -69,6 +74,8 @@ pub enum Value {
     Integer(i64),
     /// A number.
     Real(f64),
+    /// Another technique's short spelling.
+    Technique(&'static str),
     /// Left to gnomon.
     Auto,
 }
@@ -82,6 +89,7 @@ impl fmt::Display for Value {
             }
             Self::Integer(value) => write!(f, "{value}"),
             Self::Real(value) => write!(f, "{value}"),
+            Self::Technique(spec) => write!(f, "({spec})"),
             Self::Auto => write!(f, "auto"),
         }
     }
@@ -109,6 +117,11 @@ impl Param {
                 .filter(|value| (*min..=*max).contains(value))
                 .map(Value::Integer)
                 .ok_or_else(|| format!("takes a whole number from {min} to {max}, not '{typed}'")),
+            Kind::Technique => {
+                let inside = typed.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).unwrap_or(typed);
+                let spec = Spec::parse(inside).map_err(|error| format!("takes a technique in parentheses: {error}"))?;
+                Ok(Value::Technique(interned(spec.short())))
+            }
             Kind::Real { auto: true, .. } if typed == "auto" => Ok(Value::Auto),
             Kind::Real { min, max, auto } => {
                 typed.parse().ok().filter(|value| (*min..=*max).contains(value)).map(Value::Real).ok_or_else(|| {
@@ -124,6 +137,7 @@ impl Param {
     pub fn range(&self) -> String {
         match &self.kind {
             Kind::Choice(choices) => choices.iter().map(Choice::spelling).collect::<Vec<_>>().join(" | "),
+            Kind::Technique => "a technique in parentheses".to_owned(),
             Kind::Integer { min, max } => format!("{min}..{max}"),
             Kind::Real { min, max, auto } => {
                 format!("{}..{}{}", spelled(*min), spelled(*max), if *auto { " | auto" } else { "" })
@@ -142,6 +156,19 @@ impl Choice {
 fn spelled(limit: f64) -> String {
     let has_many_zeros = limit.abs() >= 1e6 || (limit.abs() < 1e-3 && limit.abs() > 0.0);
     if has_many_zeros { format!("{limit:e}") } else { limit.to_string() }
+}
+
+/// The text for as long as the program runs: specifications are small and few, and their values are copied freely.
+fn interned(text: String) -> &'static str {
+    static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    // A thread that panicked while it held the set left it whole.
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(same) = known.get(text.as_str()) {
+        return same;
+    }
+    let kept: &'static str = Box::leak(text.into_boxed_str());
+    known.insert(kept);
+    kept
 }
 
 fn parse_choice(typed: &str, choices: &[Choice]) -> Result<Value, String> {

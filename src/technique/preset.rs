@@ -23,7 +23,7 @@ const fn engine(name: &'static str, spec: &'static str, about: &'static str) -> 
 }
 
 /// Every preset.
-pub const PRESETS: [Preset; 20] = [
+pub const PRESETS: [Preset; 22] = [
     short("planar-shear", "planar:projection=shear", "projected onto a coordinate plane by a shear"),
     short("volume-zpass", "volume:count=z-pass", "faces before the surface"),
     short("volume-zfail", "volume:count=z-fail", "faces behind the surface"),
@@ -31,6 +31,8 @@ pub const PRESETS: [Preset; 20] = [
     short("volume-zp-plus", "volume:count=zp-plus", "faces before the surface from the exact start"),
     short("volume-per-triangle", "volume:count=z-fail,shape=per-triangle", "one volume per triangle"),
     short("map-projective-texture", "projective-texture", "a picture of the casters without depth"),
+    short("map-cube", "map:projection=cube", "six maps around a point light"),
+    short("map-silhouette", "silhouette", "a map that knows the casters' outline"),
     short("map-irregular", "irregular", "the light's image sampled where the receivers are"),
     engine(
         "bevy-directional",

@@ -153,6 +153,14 @@ impl Spec {
         }
     }
 
+    /// A declared technique.
+    #[must_use]
+    pub fn nested(&self, name: &str) -> Self {
+        let value = self.value(name);
+        let Value::Technique(inner) = value else { unreachable!("{name}={value} is not declared as a technique") };
+        Self::parse(inner).unwrap_or_else(|error| unreachable!("{inner} was parsed before: {error}"))
+    }
+
     /// A declared whole number.
     #[must_use]
     pub fn integer(&self, name: &str) -> i64 {

@@ -6,13 +6,17 @@
 #[cfg(test)]
 mod area_tests;
 mod cross_check;
+mod entry;
 mod exact;
+mod key;
 pub mod mitsuba;
 #[cfg(test)]
 mod tests;
 
 pub use cross_check::{Disagreement, cross_check};
+pub use entry::{EntryError, decode, encode};
 pub use exact::{ExactTruth, exact, of_area, of_points, of_receiver};
+pub use key::TruthKey;
 
 use crate::receiver::{PixelClass, Receiver, Receivers};
 

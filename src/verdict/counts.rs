@@ -1,12 +1,12 @@
 //! The figures of a verdict: how many pixels of which kind, and how large their errors are.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How many pixels there are of each kind.
 ///
 /// `total = background + facing_away + not_lit + undecided + asked`; `differing` includes the wrong ones, and
 /// `wrong = false_shadow + false_light`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PixelCounts {
     /// All pixels of the picture.
     pub total: u64,
@@ -50,7 +50,7 @@ impl PixelCounts {
 }
 
 /// How large the errors are. Ratios over no asked pixel are `None`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ErrorStats {
     /// Mean of |technique − truth| over the asked pixels, 0..=1.
     pub mean_abs: Option<f64>,
@@ -68,7 +68,7 @@ pub struct ErrorStats {
 ///
 /// One distance is that between the centres of the wrong pixel and of the nearest decided pixel on the other side of the
 /// edge, minus half a pixel. Percentiles are by nearest rank: the smallest distance that at least p % do not exceed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDistance {
     /// The median.
     pub p50: f64,

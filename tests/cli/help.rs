@@ -3,8 +3,24 @@
 use crate::check::RUN_KEYS;
 use crate::support::{gnomon, typed};
 
-const COMMANDS: [&str; 11] =
-    ["check", "render", "truth", "mask", "judge", "inspect", "explain", "diagnose", "scaffold", "list", "doctor"];
+const COMMANDS: [&str; 16] = [
+    "check",
+    "compare",
+    "sweep",
+    "merge",
+    "advise",
+    "bench-published",
+    "render",
+    "truth",
+    "mask",
+    "judge",
+    "inspect",
+    "explain",
+    "diagnose",
+    "scaffold",
+    "list",
+    "doctor",
+];
 
 #[test]
 fn help_names_every_command_and_every_command_has_an_example() {
@@ -26,7 +42,10 @@ fn help_names_every_command_and_every_command_has_an_example() {
 /// Whether gnomon understands the words of an example: it may fail to find a file, but not to read its arguments.
 fn is_understood(example: &str) -> bool {
     let words: Vec<&str> = example.split_whitespace().skip(1).collect();
-    let nowhere = words.iter().map(|word| word.replace("scenes/", "no/such/").replace("model", "no/such/model"));
+    // A shell would take the quotes off.
+    let nowhere = words
+        .iter()
+        .map(|word| word.trim_matches('\'').replace("scenes/", "no/such/").replace("model", "no/such/model"));
     let call = gnomon(&nowhere.collect::<Vec<_>>());
     !call.stderr.contains("Usage:") && !call.stderr.contains("unknown technique") && !call.stderr.contains("parameter")
 }

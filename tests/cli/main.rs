@@ -2,13 +2,19 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail by panicking")]
 
+mod advise;
+mod browser;
 mod check;
 mod commands;
+mod compare;
 mod files;
 mod help;
 mod hostile;
+mod html;
 #[cfg(unix)]
 mod interrupted;
 mod refused;
+mod schema;
 mod specs;
 mod support;
+mod sweep;

@@ -49,8 +49,7 @@ impl<'s> Shot<'s> {
         let (spec, default) = (parsed(typed), parsed("map"));
         match default.technique().supports(&default, self.view.scene, self.question.light, &GPU) {
             Ok(()) => spec,
-            Err(_) if spec.technique().id() == "map" => spec.with("fov_deg", "120").expect("a legal angle"),
-            Err(_) => spec,
+            Err(_) => spec.with("fov_deg", "120").unwrap_or(spec),
         }
     }
 

@@ -15,6 +15,7 @@ use gnomon::technique::volume::{PixelCounts, PreparedVolume, Settings};
 use gnomon::technique::{Prepared, Spec};
 use gnomon::verdict::{Ledger, Verdict};
 use gnomon::watch::Unwatched;
+use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::Path;
 use testing::{Shape, scene_of};
@@ -117,7 +118,7 @@ pub(crate) fn run(view: &View<'_>, question: &Question<'_>, typed: &str) -> Run 
     let pixels = evaluation.mask.pixels.len() as u32;
     let mut run = Run {
         stencil: prepared.stencil().unwrap(),
-        counts: (0..pixels).map(|pixel| prepared.counts(pixel)).collect(),
+        counts: (0..pixels).into_par_iter().map(|pixel| prepared.counts(pixel)).collect(),
         before_and_behind: prepared.objects_before_and_behind(),
         mask: evaluation.mask,
         verdict: evaluation.verdict,
@@ -197,6 +198,11 @@ impl Run {
         (off.len(), off.iter().filter(|at| !is_at_edge(at)).count())
     }
 
+    /// How many asked pixels are next to a count edge.
+    pub(crate) fn next_to_count_edges(&self) -> usize {
+        self.asked_pixels().filter(|at| self.is_next_to_count_edge(*at)).count()
+    }
+
     fn is_next_to_count_edge(&self, at: usize) -> bool {
         let (x, y) = ((at % self.width) as i64, (at / self.width) as i64);
         let height = (self.counts.len() / self.width) as i64;
@@ -212,7 +218,7 @@ impl Run {
     /// plus one pixel for pictures too small for a share, are miscounted, all of them at a count edge.
     pub(crate) fn counts_exactly(&self) -> bool {
         let (off, off_edge) = self.miscounts();
-        let at_edges = self.asked_pixels().filter(|at| self.is_next_to_count_edge(*at)).count();
+        let at_edges = self.next_to_count_edges();
         let allowed = (MISCOUNTED * self.asked() as f64).max(MISCOUNTED_AT_EDGES * at_edges as f64);
         off as f64 <= 1.0 + allowed && off_edge == 0
     }

@@ -89,9 +89,12 @@ mod tests {
             ["edge_distance_px", "largest_blob_px", "mean_abs", "signed", "wrong_fraction"]
         );
         assert_eq!(run["causes"]["acne"], json!({"pixels": 2, "sum": -2.1}));
-        assert_eq!(keys(&run["cost"]), ["bytes", "fragments", "gpu_ms", "passes", "primitives", "vertices"]);
+        assert_eq!(
+            keys(&run["cost"]),
+            ["bytes", "fragments", "gpu_ms", "passes", "prepare_ms", "primitives", "vertices"]
+        );
         assert_eq!(keys(&run["cost"]["gpu_ms"]), ["max", "median", "min", "runs"]);
-        assert_eq!(run["cost"]["passes"], json!([{"name": "map", "ms": 0.75}]));
+        assert_eq!(run["cost"]["passes"], json!([{"name": "map", "ms": 0.75, "ms_min": 0.5, "ms_max": 1.0}]));
         assert_eq!(run["truth"]["disagreements"], json!({"mitsuba": null, "brute": 0}));
         let budget = json!({"wrong_fraction": 0.001, "mean_abs": null, "met": false, "met_worst_case": false});
         assert_eq!(run["budget"], budget);

@@ -11,7 +11,7 @@ use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
 /// The report as JUnit XML, without times: they are no test durations.
 pub(super) fn to_junit(report: &Report) -> Result<Vec<u8>, ExportError> {
-    let mut suites = quick_junit::Report::new(report.tool.name);
+    let mut suites = quick_junit::Report::new(&report.tool.name);
     for runs in report.runs.chunk_by(|a, b| a.scene == b.scene) {
         let mut suite = TestSuite::new(valid_in_xml(&runs[0].scene));
         suite.add_test_cases(runs.iter().map(case));

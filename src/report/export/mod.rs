@@ -10,6 +10,7 @@ mod markdown;
 pub use json::to_json;
 
 use super::Report;
+use super::html::{Imagery, to_html};
 
 /// One format.
 #[derive(Debug, Clone, Copy)]
@@ -18,8 +19,10 @@ pub struct Exporter {
     pub name: &'static str,
     /// What its files end in, without the dot.
     pub extension: &'static str,
-    /// Writes a whole report.
-    pub write: fn(&Report) -> Result<Vec<u8>, ExportError>,
+    /// Writes a whole report; the pixels of its runs are for the format that shows them.
+    pub write: Write,
+    /// Whether the format shows pixels; for the others an empty [`Imagery`] will do.
+    pub shows_pixels: bool,
 }
 
 impl Exporter {
@@ -32,11 +35,20 @@ impl Exporter {
 
 /// Every format.
 pub const EXPORTERS: &[Exporter] = &[
-    Exporter { name: "json", extension: "json", write: to_json },
-    Exporter { name: "csv", extension: "csv", write: csv::to_csv },
-    Exporter { name: "markdown", extension: "md", write: markdown::to_markdown },
-    Exporter { name: "junit", extension: "xml", write: junit::to_junit },
+    text("json", "json", |report, _| to_json(report)),
+    text("csv", "csv", |report, _| csv::to_csv(report)),
+    text("markdown", "md", |report, _| markdown::to_markdown(report)),
+    text("junit", "xml", |report, _| junit::to_junit(report)),
+    Exporter { name: "html", extension: "html", write: to_html, shows_pixels: true },
 ];
+
+/// A format without pixels.
+const fn text(name: &'static str, extension: &'static str, write: Write) -> Exporter {
+    Exporter { name, extension, write, shows_pixels: false }
+}
+
+/// How a format writes a report.
+type Write = fn(&Report, &Imagery) -> Result<Vec<u8>, ExportError>;
 
 /// Why a report cannot be written in a format.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +59,12 @@ pub enum ExportError {
     /// CSV.
     #[error("the report cannot be written as CSV")]
     Csv(#[from] ::csv::Error),
+    /// HTML.
+    #[error("the report cannot be written as HTML")]
+    Html(#[from] minijinja::Error),
+    /// The pixels of the HTML report.
+    #[error("the report's pixels cannot be compressed")]
+    Packing(#[source] std::io::Error),
     /// JUnit XML.
     #[error("the report cannot be written as JUnit XML")]
     Junit(#[from] quick_junit::SerializeError),
@@ -62,8 +80,8 @@ mod tests {
         for exporter in EXPORTERS {
             assert_eq!(EXPORTERS.iter().filter(|other| other.name == exporter.name).count(), 1);
             assert_eq!(Exporter::named(exporter.name).unwrap().extension, exporter.extension);
-            let bytes = (exporter.write)(&report()).unwrap();
-            assert_eq!(bytes, (exporter.write)(&report()).unwrap(), "{}", exporter.name);
+            let bytes = (exporter.write)(&report(), &Imagery::default()).unwrap();
+            assert_eq!(bytes, (exporter.write)(&report(), &Imagery::default()).unwrap(), "{}", exporter.name);
             assert_eq!(bytes.last(), Some(&b'\n'), "{}", exporter.name);
         }
         assert!(Exporter::named("xlsx").is_none());
@@ -74,7 +92,10 @@ mod tests {
         let mut changed = report();
         changed.runs[0].typed = "map:size=1".to_owned();
         for exporter in EXPORTERS {
-            let (before, after) = ((exporter.write)(&report()).unwrap(), (exporter.write)(&changed).unwrap());
+            let (before, after) = (
+                (exporter.write)(&report(), &Imagery::default()).unwrap(),
+                (exporter.write)(&changed, &Imagery::default()).unwrap(),
+            );
             assert_ne!(before, after, "{}", exporter.name);
         }
     }

@@ -1,10 +1,11 @@
 //! The figures of a run that no other module owns: causes, truth, budget and jitter.
 
 use crate::verdict::{CauseShare, Verdict};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What one cause is answerable for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CauseEntry {
     /// Wrong pixels named after it.
     pub pixels: u64,
@@ -19,7 +20,7 @@ impl From<&CauseShare> for CauseEntry {
 }
 
 /// Where the truth came from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TruthSource {
     /// The oracle's name.
     pub oracle: String,
@@ -34,7 +35,7 @@ pub struct TruthSource {
 }
 
 /// What came of asking Mitsuba.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MitsubaFigures {
     /// Version and variant.
     pub version: String,
@@ -53,7 +54,7 @@ pub struct MitsubaFigures {
 }
 
 /// A test of counted shares of an area light against an estimate by other points.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimateFigures {
     /// Points drawn for each pixel.
     pub draws: u32,
@@ -68,7 +69,7 @@ pub struct EstimateFigures {
 }
 
 /// A ray on which two oracles disagree, or that one of them cannot decide.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RayRow {
     /// Column and row.
     pub pixel: [u32; 2],
@@ -81,17 +82,17 @@ pub struct RayRow {
     /// What the exact truth says: blocked or not.
     pub blocked: bool,
     /// What Mitsuba says: blocked, lit or contact.
-    pub mitsuba: &'static str,
+    pub mitsuba: Cow<'static, str>,
     /// Whether exact arithmetic on every triangle says so, too.
     pub confirmed: bool,
     /// Why they differ.
-    pub reason: &'static str,
+    pub reason: Cow<'static, str>,
     /// How far the ray would have to move for the other verdict to be right, metres.
     pub distance_m: f64,
 }
 
 /// Pixels on which other oracles disagree; `None` for one that was not asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Disagreements {
     /// Mitsuba 3.
     pub mitsuba: Option<u64>,
@@ -100,7 +101,7 @@ pub struct Disagreements {
 }
 
 /// A limit on a run's error, and whether it was met.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BudgetOutcome {
     /// Largest allowed share of wrong pixels among the asked, 0..=1.
     pub wrong_fraction: Option<f64>,
@@ -131,7 +132,7 @@ impl BudgetOutcome {
 }
 
 /// The spread of a run's error over sub-texel shifts of its map: one view alone is one sample of the texel phase.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Jitter {
     /// How many shifts were rendered.
     pub phases: u32,
@@ -140,7 +141,7 @@ pub struct Jitter {
 }
 
 /// Mean and spread of some samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
@@ -177,7 +178,7 @@ impl Spread {
 }
 
 /// Shimmering: pixels that flip from one frame to the next although the truth does not, or the other way round.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// How many steps were taken of each kind.
     pub steps: u32,

@@ -15,13 +15,13 @@ pub use figures::{
 };
 pub use run::{Question, Run, Status};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The version of report.json's layout; it changes when a reader would have to.
 pub const SCHEMA: u32 = 1;
 
 /// Everything one call of gnomon found out.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Layout version, [`SCHEMA`].
     pub schema: u32,
@@ -37,22 +37,22 @@ impl Report {
     /// The report of this version of gnomon.
     #[must_use]
     pub fn new(adapter: Adapter, runs: Vec<Run>) -> Self {
-        let tool = Tool { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") };
+        let tool = Tool { name: env!("CARGO_PKG_NAME").to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
         Self { schema: SCHEMA, tool, adapter, runs }
     }
 }
 
 /// The program that wrote a report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tool {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// Its version.
-    pub version: &'static str,
+    pub version: String,
 }
 
 /// The graphics adapter that rendered.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Adapter {
     /// As the driver calls it.
     pub name: String,

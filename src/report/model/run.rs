@@ -5,7 +5,7 @@ use crate::cause::Cause;
 use crate::technique::Cost;
 use crate::verdict::{ErrorStats, Ledger, PixelCounts, Verdict};
 use glam::UVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// What was asked in a run, known before anything is rendered.
@@ -28,7 +28,7 @@ pub struct Question {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// It was judged.
@@ -40,7 +40,7 @@ pub enum Status {
 }
 
 /// One scene, light and technique.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The scene's folder name.
     pub scene: String,

@@ -45,7 +45,7 @@ pub(super) fn colour(cause: Cause) -> Rgb888 {
 #[cfg(test)]
 mod tests {
     use super::super::colour::difference::{for_everybody, for_the_colour_blind};
-    use super::super::palette::{DIM_LIT, DIM_SHADOW};
+    use super::super::palette::{DIM_LIT, DIM_SHADOW, UNCOMPARED};
     use super::*;
 
     /// What the search reached: smallest CIE 1976 ΔE of any two causes, or of a cause and the dimmed truth.
@@ -73,6 +73,11 @@ mod tests {
             colours.push(truth);
             assert_eq!(too_close(&colours), None);
             colours.pop();
+        }
+        // A pixel that is not compared must not pass for a wrong one.
+        for class in &UNCOMPARED {
+            let apart = |colour: &Rgb888| for_everybody(*colour, class.colour) > APART_FOR_EVERYBODY;
+            assert!(COLOURS.iter().all(|(_, colour)| apart(colour)), "{}", class.name);
         }
         // Control: a slightly different orange is found.
         colours[17] = rgb(0xE8_A8_08);

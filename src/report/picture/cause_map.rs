@@ -16,7 +16,7 @@ use crate::verdict::Ledger;
 use embedded_graphics::pixelcolor::Rgb888;
 
 /// How strong the colour of a pixel is that differs without being wrong.
-const MERELY_DIFFERING: f32 = 0.5;
+pub(super) const MERELY_DIFFERING: f32 = 0.5;
 
 /// What a cause map is made from; every list has one entry per pixel of the truth.
 #[derive(Debug, Clone, Copy)]

@@ -12,6 +12,7 @@ mod count_map;
 mod depth_map;
 mod error_map;
 mod legend;
+mod page;
 mod palette;
 mod sheet;
 mod value_map;
@@ -21,6 +22,7 @@ pub use cause_map::{CauseMap, cause_map};
 pub use count_map::{CountMap, count_map};
 pub use depth_map::{DepthMap, depth_map};
 pub use error_map::{ErrorMap, error_map};
+pub(super) use page::page_colours;
 pub use value_map::{ValueMap, value_map};
 
 use glam::UVec2;

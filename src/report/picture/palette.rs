@@ -36,7 +36,8 @@ pub(super) const FALSE_LIGHT: Rgb888 = rgb(0xFF_8C_1A);
 const BACKGROUND: Rgb888 = rgb(0x24_36_4C);
 const FACING_AWAY: Rgb888 = rgb(0x4E_3A_66);
 const NOT_LIT: Rgb888 = rgb(0x4A_44_22);
-const UNDECIDED: Rgb888 = rgb(0xFF_B3_D1);
+/// As quiet as the other classes: an undecided pixel is no error and must not look like one among the causes.
+const UNDECIDED: Rgb888 = rgb(0x1C_5C_50);
 
 /// A pixel that is not compared, with its name in legends.
 pub(super) struct Uncompared {
@@ -90,7 +91,7 @@ mod tests {
 
     #[test]
     fn errors_stand_out_for_everybody() {
-        let quiet = [DIM_SHADOW, DIM_LIT, BACKGROUND, FACING_AWAY, NOT_LIT];
+        let quiet = [DIM_SHADOW, DIM_LIT, BACKGROUND, FACING_AWAY, NOT_LIT, UNDECIDED];
         for loud in [FALSE_SHADOW, FALSE_LIGHT] {
             assert!(quiet.iter().all(|&quiet| for_the_colour_blind(loud, quiet) > 3.0 * CLEARLY_DIFFERENT));
         }

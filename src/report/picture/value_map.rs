@@ -19,10 +19,11 @@ const CLOSEST_GRID_PX: f32 = 6.0;
 /// How strongly a grid line darkens.
 const GRID_DARKENS: f32 = 0.45;
 /// The m at which the colours end.
-const LARGEST_M: f32 = 10.0;
+pub(super) const LARGEST_M: f32 = 10.0;
 
 /// From m = 1 to m = [`LARGEST_M`].
-const COLOURS: [Rgb888; 5] = [rgb(0x2C_A0_2C), rgb(0xB5_CF_3A), rgb(0xF6_D6_43), rgb(0xE8_6A_1E), rgb(0x8B_0A_14)];
+pub(super) const COLOURS: [Rgb888; 5] =
+    [rgb(0x2C_A0_2C), rgb(0xB5_CF_3A), rgb(0xF6_D6_43), rgb(0xE8_6A_1E), rgb(0x8B_0A_14)];
 
 /// What an m map is made from; both lists have one entry per pixel, row by row from the top, `None` where the map is not
 /// looked up.

@@ -1,7 +1,7 @@
 //! Where one pixel's lookup went, for people.
 
 use super::prepared::PreparedMap;
-use super::replay::{Replayer, each_tap};
+use super::replay::Replayer;
 use crate::technique::TechniqueError;
 
 /// More taps than this are not listed one by one.
@@ -36,7 +36,7 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
 
     let replayer = Replayer::new(map, &[pixel])?;
     let mut taps = Vec::new();
-    each_tap(map, &receiver, &placed, &mut |tap, _| taps.push(tap));
+    replayer.each_tap(&receiver, &placed, &mut |tap, _| taps.push(tap));
     for tap in taps.iter().take(LISTED_TAPS) {
         let Some(tap) = tap else {
             facts.push(fact("texel", "outside the map".to_owned()));

@@ -13,6 +13,7 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod outline;
 mod own_surface;
 mod passes;
 mod prepared;
@@ -71,7 +72,7 @@ impl Technique for Map {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job)?))
+        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job, None)?))
     }
 }
 
@@ -118,27 +119,14 @@ pub(in crate::technique) fn fit_params() -> Vec<Param> {
     ]
 }
 
-static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
+/// The parameters of stored depth and of bias, which every technique that compares depths declares.
+#[must_use]
+pub(in crate::technique) fn bias_params() -> Vec<Param> {
     let plain = |names: &[&'static str]| Kind::Choice(names.iter().copied().map(Choice::plain).collect());
     let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
     let real = |min, max| Kind::Real { min, max, auto: false };
     let auto = |min, max| Kind::Real { min, max, auto: true };
-    let mut params = vec![
-        param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the map"),
-        param(
-            "projection",
-            "",
-            Kind::Choice(projection::registry().iter().map(|p| Choice::plain(p.name())).collect()),
-            Value::Choice("single", None),
-            "how the light's view is laid out in the map",
-        ),
-        param(
-            "filter",
-            "",
-            Kind::Choice(filter::registry().iter().map(|f| f.choice()).collect()),
-            Value::Choice("nearest", None),
-            "how comparisons are averaged",
-        ),
+    vec![
         param(
             "bias",
             "",
@@ -190,7 +178,39 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             Value::Real(64.0),
             "largest closed-form bias at grazing light",
         ),
+    ]
+}
+
+/// A map with the casters' silhouettes, whose edges are given, ready to run.
+pub(in crate::technique) fn prepare_with_silhouettes<'j>(
+    settings: &Settings,
+    job: Job<'j>,
+    edges_in_world: &[[glam::DVec3; 2]],
+) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
+    Ok(Box::new(prepared::PreparedMap::new(settings, job, Some(edges_in_world))?))
+}
+
+static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
+    let plain = |names: &[&'static str]| Kind::Choice(names.iter().copied().map(Choice::plain).collect());
+    let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
+    let mut params = vec![
+        param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the map"),
+        param(
+            "projection",
+            "",
+            Kind::Choice(projection::registry().iter().map(|p| Choice::plain(p.name())).collect()),
+            Value::Choice("single", None),
+            "how the light's view is laid out in the map",
+        ),
+        param(
+            "filter",
+            "",
+            Kind::Choice(filter::registry().iter().map(|f| f.choice()).collect()),
+            Value::Choice("nearest", None),
+            "how comparisons are averaged",
+        ),
     ];
+    params.extend(bias_params());
     params.extend([
         param(
             "near_mode",

@@ -1,13 +1,14 @@
 //! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
 use super::lookup::Lookup;
+use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
-use glam::Mat4;
+use glam::{DVec3, Mat4};
 use projection::{GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
@@ -24,8 +25,8 @@ const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// The files of a lookup with one value of each axis.
-fn lookup_files(projection: &dyn projection::Projection, filter: &dyn filter::Filter) -> [Wgsl; 6] {
-    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, filter.shader()]
+fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 6] {
+    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, filter]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -36,10 +37,13 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         ("map caster depth".to_owned(), vec![CASTER_DEPTH]),
         ("map gather".to_owned(), vec![GATHER]),
     ];
+    modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
+    let single = projection::by_name("single");
+    modules.push(("silhouette lookup".to_owned(), lookup_files(single, WEDGES).to_vec()));
     for projection in projection::registry() {
         for filter in filter::registry() {
             let label = format!("map lookup {} {}", projection.name(), filter.choice().name);
-            modules.push((label, lookup_files(*projection, *filter).to_vec()));
+            modules.push((label, lookup_files(*projection, filter.shader()).to_vec()));
         }
     }
     modules
@@ -67,6 +71,7 @@ pub(super) struct MapPasses {
     layers: Vec<Layer>,
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
+    points: Option<PointPass>,
     buffer_bytes: u64,
 }
 
@@ -87,6 +92,7 @@ impl MapPasses {
         settings: &Settings,
         lookup: &Lookup,
         receivers: &ReceiverBuffer,
+        silhouettes: Option<&[[DVec3; 2]]>,
     ) -> Result<Self, GpuError> {
         gpu.scoped("the shadow map's set-up", || {
             let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
@@ -96,27 +102,31 @@ impl MapPasses {
             let views: Vec<GpuView> = lookup.views.iter().map(View::gpu).collect();
             let views = gpu.buffer("views", &views, BufferUsages::STORAGE);
             let uniform = gpu.uniform("lookup", lookup.uniform(settings.kernel));
-            let lookup_pipeline =
-                gpu.compute_pipeline("map lookup", &lookup_files(settings.projection, settings.filter));
+            let filter = if silhouettes.is_some() { WEDGES } else { settings.filter.shader() };
+            let lookup_pipeline = gpu.compute_pipeline("map lookup", &lookup_files(settings.projection, filter));
             let all_layers = all_layers(&map);
+            let points = silhouettes.map(|edges| PointPass::new(gpu, lookup.texels(), &views, &all_layers, edges));
             let bind = |chunk: &Chunk| {
-                let resources = [
+                let mut resources = vec![
                     chunk.receivers.as_entire_binding(),
                     chunk.visibilities.as_entire_binding(),
                     uniform.as_entire_binding(),
                     BindingResource::TextureView(&all_layers),
                     views.as_entire_binding(),
                 ];
+                resources.extend(points.as_ref().map(|points| BindingResource::TextureView(&points.view)));
                 gpu.bind(&lookup_pipeline.get_bind_group_layout(0), &resources)
             };
             Self {
-                buffer_bytes: views.size()
+                buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
+                    + views.size()
                     + uniform.size()
                     + u64::from(layer_count) * size_of::<CasterUniform>() as u64,
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers: layers(gpu, settings, lookup, &map),
                 map,
                 lookup_pipeline,
+                points,
             }
         })
     }
@@ -143,6 +153,9 @@ impl MapPasses {
                     geometry.draw_casters(pass);
                 });
             }
+            if let Some(points) = &self.points {
+                points.record(&mut recorder);
+            }
             recorder.compute("lookup", |pass| {
                 pass.set_pipeline(&self.lookup_pipeline);
                 for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
@@ -153,6 +166,11 @@ impl MapPasses {
             recorder
         })?;
         recorder.finish("the shadow map")
+    }
+
+    /// The outline's points that the last run drew; `None` for a map without silhouettes.
+    pub(super) fn points(&self, gpu: &Gpu) -> Result<Option<Points>, GpuError> {
+        self.points.as_ref().map(|points| points.read(gpu)).transpose()
     }
 
     /// The stored depths of some texels, by index, as the GPU holds them.

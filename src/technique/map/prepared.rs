@@ -17,22 +17,37 @@ pub(super) struct PreparedMap<'j> {
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
     pub(super) scene_radius_m: f64,
+    /// The edges of the casters' silhouettes, for a map that draws them.
+    pub(super) silhouettes: Option<Vec<[DVec3; 2]>>,
 }
 
 impl<'j> PreparedMap<'j> {
-    pub(super) fn new(settings: &Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+    /// With the edges of the casters' silhouettes for a map that draws them.
+    pub(super) fn new(
+        settings: &Settings,
+        job: Job<'j>,
+        silhouettes: Option<&[[DVec3; 2]]>,
+    ) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
         let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers)?;
+        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
-        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m })
+        let silhouettes = silhouettes.map(<[_]>::to_vec);
+        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m, silhouettes })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
         self.job.receivers.pixels.get(pixel as usize).copied().flatten()
+    }
+
+    /// The depths of all texels as the GPU holds them: views below each other, row by row.
+    pub(super) fn all_depths(&self) -> Result<Vec<f64>, TechniqueError> {
+        let texels = self.lookup.texels().element_product() * self.lookup.views.len() as u32;
+        let indices: Vec<u32> = (0..texels).collect();
+        Ok(self.passes.gather(self.job.gpu, &self.lookup, &indices)?)
     }
 
     /// What the bias does at a placed receiver, and what it should do.
@@ -113,8 +128,7 @@ impl Prepared for PreparedMap<'_> {
     fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
         // Views below each other.
         let size = self.lookup.texels() * UVec2::new(1, self.lookup.views.len() as u32);
-        let indices: Vec<u32> = (0..size.element_product()).collect();
-        let depths = self.passes.gather(self.job.gpu, &self.lookup, &indices)?;
+        let depths = self.all_depths()?;
         // Cleared texels are exactly at one end of the range.
         let drawn = |depth: f64| (depth > 0.0 && depth < 1.0).then_some(depth);
         Ok(Some(LightDepths { size, depths: depths.into_iter().map(drawn).collect() }))

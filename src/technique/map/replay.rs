@@ -4,6 +4,7 @@
 
 use super::exact_texels::{ExactTexel, ExactTexels};
 use super::lookup::{Lookup, Outside, Placed, Tap};
+use super::outline::Points;
 use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
 use crate::cast::Hit;
@@ -12,7 +13,7 @@ use crate::mask::Mask;
 use crate::receiver::Receiver;
 use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, IVec2};
 use rayon::prelude::*;
 
 /// Up to here a filtered answer counts as shadow.
@@ -63,11 +64,20 @@ pub(super) struct Replayer<'r> {
     texels: ExactTexels,
     /// What the GPU holds in them.
     stored: Vec<f64>,
+    /// The silhouettes' points as they should be drawn over the GPU's depths.
+    points: Option<Points>,
+    /// What the GPU drew.
+    stored_points: Option<Points>,
 }
 
 impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
+        let stored_points = map.passes.points(map.job.gpu)?;
+        let points = match &map.silhouettes {
+            Some(edges) => Some(Points::drawn(edges, &map.lookup.views[0], &map.all_depths()?)),
+            None => None,
+        };
         let texels_of = |pixel: &u32| {
             let mut indices = Vec::new();
             let Some(receiver) = map.receiver(*pixel) else { return indices };
@@ -76,8 +86,12 @@ impl<'r> Replayer<'r> {
                     let mut read = |tap: Option<Tap>| {
                         indices.extend(tap.and_then(|tap| map.lookup.texel_index(tap.placed.view, tap.texel)));
                     };
-                    read(map.lookup.tap(&placed, receiver.normal_in_world, placed.own_texel()));
-                    each_tap(map, &receiver, &placed, &mut |tap, _| read(tap));
+                    read(map.lookup.tap(&placed, receiver.normal_in_world, own_texel(points.as_ref(), &placed)));
+                    for points in [points.as_ref(), stored_points.as_ref()] {
+                        taps(map, points, placed.position_in_texels, &mut |texel, _| {
+                            read(map.lookup.tap(&placed, receiver.normal_in_world, texel));
+                        });
+                    }
                 }
             }
             indices
@@ -85,7 +99,7 @@ impl<'r> Replayer<'r> {
         let indices = pixels.par_iter().flat_map_iter(texels_of).collect();
         let texels = ExactTexels::cast(map.job.scene, map.job.casters, &map.lookup, indices);
         let stored = map.passes.gather(map.job.gpu, &map.lookup, &texels.indices)?;
-        Ok(Self { map, unbiased, texels, stored })
+        Ok(Self { map, unbiased, texels, stored, points, stored_points })
     }
 
     /// The exact answer at a pixel and what each stage makes of it.
@@ -181,7 +195,7 @@ impl<'r> Replayer<'r> {
     fn cause_of_loss(&self, pixel: u32, receiver: &Receiver, view: usize) -> Cause {
         let Some(placed) = place(&self.unbiased, view, receiver) else { return Cause::PeterPanning };
         let mut value = 0.0;
-        self.map.settings.filter.taps(self.map.settings.kernel, placed.position_in_texels, &mut |texel, weight| {
+        taps(self.map, self.points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
             let tap = self.unbiased.tap(&placed, receiver.normal_in_world, texel);
             let lit = tap.and_then(|tap| Some((tap, self.exact(&tap)?))).map(|(tap, found)| {
                 visibility(self.unbiased.is_lit(tap.placed.view, tap.placed.reference, found.unbiased_depth))
@@ -193,7 +207,7 @@ impl<'r> Replayer<'r> {
 
     /// The answer of the receiver's own texel with exact depth.
     fn sampling(&self, pixel: u32, receiver: &Receiver, placed: &Placed) -> Step {
-        let own_texel = self.map.lookup.tap(placed, receiver.normal_in_world, placed.own_texel());
+        let own_texel = self.map.lookup.tap(placed, receiver.normal_in_world, own_texel(self.points.as_ref(), placed));
         let (value, own) = self.compare(receiver, own_texel.as_ref());
         Step { value, cause: own.unwrap_or_else(|| aliasing_cause(self.map.footprint(pixel).as_ref())) }
     }
@@ -203,7 +217,7 @@ impl<'r> Replayer<'r> {
     fn filter(&self, receiver: &Receiver, placed: &Placed, sampled: f64) -> Step {
         let (mut value, mut self_shadow, mut other) = (0.0, 0.0, 0.0);
         let mut self_cause = Cause::Acne;
-        each_tap(self.map, receiver, placed, &mut |tap, weight| {
+        self.each_tap(receiver, placed, &mut |tap, weight| {
             let (lit, own) = self.compare(receiver, tap.as_ref());
             value += weight * lit;
             match own {
@@ -222,7 +236,8 @@ impl<'r> Replayer<'r> {
     fn by_stored_texels(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let mut value = 0.0;
-        each_tap(self.map, receiver, placed, &mut |tap, weight| {
+        taps(self.map, self.stored_points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
+            let tap = lookup.tap(placed, receiver.normal_in_world, texel);
             let lit = tap
                 .and_then(|tap| Some((tap, self.stored(&tap)?)))
                 .map(|(tap, depth)| visibility(lookup.is_lit(tap.placed.view, tap.placed.reference, depth)));
@@ -266,6 +281,13 @@ impl<'r> Replayer<'r> {
         Some(if is_cleared { Cause::Acne } else { Cause::Curvature })
     }
 
+    /// Calls `tap` with what each tap of a lookup reads (`None` outside the map) and its weight.
+    pub(super) fn each_tap(&self, receiver: &Receiver, placed: &Placed, tap: &mut dyn FnMut(Option<Tap>, f64)) {
+        taps(self.map, self.points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
+            tap(self.map.lookup.tap(placed, receiver.normal_in_world, texel), weight);
+        });
+    }
+
     fn rank(&self, tap: &Tap) -> Option<usize> {
         self.map.lookup.texel_index(tap.placed.view, tap.texel).and_then(|index| self.texels.rank(index))
     }
@@ -304,16 +326,18 @@ pub(super) fn place(lookup: &Lookup, view: usize, receiver: &Receiver) -> Option
     lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()
 }
 
-/// Calls `tap` with what each of the filter's taps reads (`None` outside the map) and its weight.
-pub(super) fn each_tap(
-    map: &PreparedMap<'_>,
-    receiver: &Receiver,
-    placed: &Placed,
-    tap: &mut dyn FnMut(Option<Tap>, f64),
-) {
-    map.settings.filter.taps(map.settings.kernel, placed.position_in_texels, &mut |texel, weight| {
-        tap(map.lookup.tap(placed, receiver.normal_in_world, texel), weight);
-    });
+/// Calls `tap` with the texels of a lookup at a place in the map and their weights: those of the filter or, with
+/// silhouettes, the one on the same side of the outline.
+fn taps(map: &PreparedMap<'_>, points: Option<&Points>, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+    match points {
+        Some(points) => tap(points.texel(position_in_texels), 1.0),
+        None => map.settings.filter.taps(map.settings.kernel, position_in_texels, tap),
+    }
+}
+
+/// The texel that alone answers for a receiver.
+fn own_texel(points: Option<&Points>, placed: &Placed) -> IVec2 {
+    points.map_or_else(|| placed.own_texel(), |points| points.texel(placed.position_in_texels))
 }
 
 fn visibility(is_lit: bool) -> f64 {

@@ -142,20 +142,9 @@ impl Settings {
             filter: filter::by_name(filter_name),
             kernel,
             bias: bias::by_name(spec.choice("bias").0),
-            format: match spec.choice("format").0 {
-                "depth16unorm" => DepthFormat::Depth16Unorm,
-                "depth24plus" => DepthFormat::Depth24Plus,
-                _ => DepthFormat::Depth32Float,
-            },
+            format: format_of(spec),
             reversed: spec.choice("depth_convention").0 == "reversed",
-            bias_numbers: bias::Numbers {
-                constant_units: spec.real_or_auto("bias_constant_ulps"),
-                slope: spec.real_or_auto("bias_slope"),
-                clamp: spec.real("bias_clamp"),
-                depth_m: spec.real("bias_depth_m"),
-                normal_texels: spec.real("bias_normal_texels"),
-                cap_texels: spec.real("bias_cap_texels"),
-            },
+            bias_numbers: bias_numbers_of(spec),
             fit: Fit::of(spec),
             near_mode: match spec.choice("near_mode").0 {
                 "depth-clamp" => NearMode::DepthClamp,
@@ -177,6 +166,28 @@ impl Settings {
         }
     }
 
+    /// Reads a `silhouette` specification. Depth has one texel more than outlines, which lie between texel centres, and
+    /// a receiver reads centres up to a texel away along each axis, as a bilinear lookup does.
+    #[must_use]
+    pub fn with_silhouettes(spec: &Spec) -> Self {
+        Self {
+            size: spec.integer("size") as u32 + 1,
+            projection: projection::by_name("single"),
+            filter: filter::by_name("pcf-bilinear"),
+            kernel: 1,
+            bias: bias::by_name(spec.choice("bias").0),
+            format: format_of(spec),
+            reversed: spec.choice("depth_convention").0 == "reversed",
+            bias_numbers: bias_numbers_of(spec),
+            fit: Fit::of(spec),
+            near_mode: NearMode::Extend,
+            caster_sides: CasterSides::All,
+            seam: Seam::PerTap,
+            border: Border::Lit,
+            knobs: projection::Knobs::default(),
+        }
+    }
+
     /// Texels between the fit and the map's rim, so that kernels stay inside.
     #[must_use]
     pub fn rim_texels(&self) -> f64 {
@@ -187,5 +198,24 @@ impl Settings {
     #[must_use]
     pub fn bias_amounts(&self) -> bias::Amounts {
         self.bias.amounts(&self.bias_numbers, self.filter.bias_kernel(self.kernel))
+    }
+}
+
+fn format_of(spec: &Spec) -> DepthFormat {
+    match spec.choice("format").0 {
+        "depth16unorm" => DepthFormat::Depth16Unorm,
+        "depth24plus" => DepthFormat::Depth24Plus,
+        _ => DepthFormat::Depth32Float,
+    }
+}
+
+fn bias_numbers_of(spec: &Spec) -> bias::Numbers {
+    bias::Numbers {
+        constant_units: spec.real_or_auto("bias_constant_ulps"),
+        slope: spec.real_or_auto("bias_slope"),
+        clamp: spec.real("bias_clamp"),
+        depth_m: spec.real("bias_depth_m"),
+        normal_texels: spec.real("bias_normal_texels"),
+        cap_texels: spec.real("bias_cap_texels"),
     }
 }

@@ -6,7 +6,7 @@
 
 use super::casting::{CastingObject, Facing, facing};
 use super::extrude::{Reach, extrude};
-use super::settings::Settings;
+use super::settings::{Extrude, Settings};
 use super::silhouette::{SilhouetteEdge, silhouette};
 use crate::scene::{Light, Scene};
 use glam::{DVec3, DVec4};
@@ -41,6 +41,10 @@ pub(super) struct Faces {
     pub(super) front_caps: Vec<u32>,
     /// Front caps of triangles turned away from it, into the scene's corners, wound inward.
     pub(super) inward_front_caps: Vec<u32>,
+    /// Whether front caps are drawn at all.
+    pub(super) has_front_caps: bool,
+    /// Whether back caps are.
+    pub(super) has_back_caps: bool,
     /// Silhouette edges, each as often as it has sides.
     pub(super) silhouette_edges: u64,
 }
@@ -52,7 +56,7 @@ impl Plan {
             light: light.homogeneous(),
             reach,
             per_triangle: settings.per_triangle,
-            extrudes_on_gpu: settings.extrudes_on_gpu,
+            extrudes_on_gpu: settings.extrude != Extrude::Cpu,
             away_facing_back_cap: settings.away_facing_back_cap,
         }
     }
@@ -128,21 +132,28 @@ impl Plan {
         let (from, to) = (edge.from, edge.to);
         if self.ends_in_a_point() && !self.extrudes_on_gpu {
             sides.extend([near(to), near(from), 2 * vertex_count]);
-        } else if from < to {
-            sides.extend([near(to), near(from), far(to), near(from), far(from), far(to)]);
         } else {
-            sides.extend([near(to), near(from), far(from), near(to), far(from), far(to)]);
+            sides.extend(quad(from, to).as_flattened());
         }
     }
 }
 
+/// The quad under an edge as two triangles.
+pub(super) fn quad(from: u32, to: u32) -> [[u32; 3]; 2] {
+    if from < to {
+        [[near(to), near(from), far(to)], [near(from), far(from), far(to)]]
+    } else {
+        [[near(to), near(from), far(from)], [near(to), far(from), far(to)]]
+    }
+}
+
 /// Index of a welded position as it is.
-fn near(welded: u32) -> u32 {
+pub(super) fn near(welded: u32) -> u32 {
     2 * welded
 }
 
 /// Index of a welded position extruded.
-fn far(welded: u32) -> u32 {
+pub(super) fn far(welded: u32) -> u32 {
     2 * welded + 1
 }
 

@@ -28,11 +28,27 @@ pub(super) struct CastingObject {
     /// True if only triangles that face the light are in use.
     pub(super) light_facing_only: bool,
     /// Edges at which the mesh is not closed.
-    pub(super) unbalanced_edges: usize,
+    pub(super) open_edges: Vec<OpenEdge>,
     /// Centre of a sphere around the used triangles.
     pub(super) centre_in_world: DVec3,
     /// Its radius, metres.
     pub(super) radius_m: f64,
+}
+
+/// An edge whose faces do not cancel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OpenEdge {
+    /// Its place among the object's edges in the order of their welded vertices, from 0.
+    pub(super) id: usize,
+    /// Welded indices of its ends.
+    pub(super) ends: [u32; 2],
+}
+
+impl CastingObject {
+    /// Whether triangles that would be needed to close its volumes are missing.
+    pub(super) fn is_open_and_one_sided(&self) -> bool {
+        self.light_facing_only && !self.open_edges.is_empty()
+    }
 }
 
 /// Every object that casts.
@@ -57,12 +73,13 @@ fn object(
     let homogeneous = light.homogeneous();
     let corners = |triangle: u32| scene.triangles[triangle as usize].map(|v| welded.index_of_vertex[v as usize]);
     let faces: Vec<[u32; 3]> = mesh.triangles.clone().map(corners).collect();
-    let unbalanced_edges = edges_of(&faces).iter().filter(|edge| !edge.is_balanced()).count();
+    let open = edges_of(&faces).into_iter().enumerate().filter(|(_, edge)| !edge.is_balanced());
+    let open_edges: Vec<OpenEdge> = open.map(|(id, edge)| OpenEdge { id, ends: [edge.low, edge.high] }).collect();
     let light_facing_only = match settings.caster_sides {
         CasterSides::LightFacing => true,
         CasterSides::All => false,
         CasterSides::Auto => {
-            !settings.per_triangle && unbalanced_edges == 0 && sees_it_from_outside(scene, mesh, homogeneous)
+            !settings.per_triangle && open_edges.is_empty() && sees_it_from_outside(scene, mesh, homogeneous)
         }
     };
     let (mut used, mut towards_light, mut turned_away) = (Vec::new(), Vec::new(), Vec::new());
@@ -90,7 +107,7 @@ fn object(
         towards_light,
         turned_away,
         light_facing_only,
-        unbalanced_edges,
+        open_edges,
         centre_in_world,
         radius_m,
     }
@@ -163,7 +180,7 @@ mod tests {
         let objects = objects(&[cube(DVec3::ZERO), open_cube()], above, "volume");
         assert!(objects[0].light_facing_only && !objects[1].light_facing_only);
         assert_eq!((objects[0].used.len(), objects[1].used.len()), (2, 10));
-        assert_eq!((objects[0].unbalanced_edges, objects[1].unbalanced_edges), (0, 4));
+        assert_eq!((objects[0].open_edges.len(), objects[1].open_edges.len()), (0, 4));
     }
 
     #[test]

@@ -103,6 +103,13 @@ impl<'s> Counter<'s> {
         ids.filter(|&triangle| self.used[triangle as usize] != [0, 0]).collect()
     }
 
+    /// Triangles, used or not, that the segment to the light crosses, with the points.
+    pub(super) fn all_crossed(&self, point_in_world: DVec3, own: Option<u32>) -> Vec<(u32, DVec3)> {
+        let segment = self.segment_from(point_in_world);
+        let at = |hit: Hit| (hit.triangle, segment.from.lerp(segment.to, hit.t));
+        self.crossings(&segment, own).into_iter().map(at).collect()
+    }
+
     /// A directional light's segment is as long as its radius says, and a point may lie far outside the scene.
     fn segment_from(&self, point_in_world: DVec3) -> Segment {
         let radius_m = self.scene_radius_m.max(point_in_world.distance(self.scene_centre));

@@ -3,8 +3,10 @@
 use super::assembly::Faces;
 use super::extrude::Reach;
 use super::eye::Eye;
-use super::pipelines::{Source, VolumeShader, near_pipeline, volume_pipeline};
-use super::settings::Settings;
+use super::pipelines::{Source, VolumeShader, near_pipeline, range_pipeline, volume_pipeline};
+use super::quads::Quads;
+use super::range::FLAG;
+use super::settings::{Extrude, Settings};
 use super::states::{Counting, Half, Side};
 use super::volumes::Volumes;
 use crate::gpu::Gpu;
@@ -23,7 +25,7 @@ struct EyeUniform {
     padding: [u32; 2],
 }
 
-/// `Extrusion` of `shaders/volume/extruded.wgsl`.
+/// `Extrusion` of `shaders/volume/extrusion.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 struct ExtrusionUniform {
@@ -33,13 +35,23 @@ struct ExtrusionUniform {
     more_padding: [u32; 2],
 }
 
-/// One indexed draw.
+/// `Bound` of `shaders/volume/range.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct BoundUniform {
+    depth: f32,
+    padding: u32,
+    more_padding: [u32; 2],
+}
+
+/// One draw.
 pub(super) struct Draw {
     pipeline: RenderPipeline,
     bindings: BindGroup,
-    vertices: Buffer,
-    indices: Buffer,
+    /// Vertices and indices; none where the vertex shader fetches them itself.
+    buffers: Option<[Buffer; 2]>,
     count: u32,
+    stencil_reference: u8,
 }
 
 /// Builds draws and counts the bytes of what they use.
@@ -50,6 +62,7 @@ pub(super) struct Builder<'b> {
     extrusion_uniform: Buffer,
     corners: Option<Buffer>,
     vertices: Buffer,
+    casters: Option<Buffer>,
     pub(super) bytes: u64,
 }
 
@@ -58,9 +71,15 @@ impl Draw {
     pub(super) fn record(&self, pass: &mut RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bindings, &[]);
-        pass.set_vertex_buffer(0, self.vertices.slice(..));
-        pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint32);
-        pass.draw_indexed(0..self.count, 0, 0..1);
+        pass.set_stencil_reference(self.stencil_reference.into());
+        match &self.buffers {
+            Some([vertices, indices]) => {
+                pass.set_vertex_buffer(0, vertices.slice(..));
+                pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+                pass.draw_indexed(0..self.count, 0, 0..1);
+            }
+            None => pass.draw(0..self.count, 0..1),
+        }
     }
 }
 
@@ -76,10 +95,13 @@ impl<'b> Builder<'b> {
             padding: 0,
             more_padding: [0; 2],
         };
-        let vertices = gpu.buffer("volume vertices", &volumes.vertices, BufferUsages::VERTEX);
+        let vertices = gpu.buffer("volume vertices", &volumes.vertices, BufferUsages::VERTEX | BufferUsages::STORAGE);
         let eye_uniform = eye_buffer(gpu, eye);
         let extrusion_uniform = gpu.uniform("extrusion", extrusion);
-        let bytes = vertices.size() + eye_uniform.size() + extrusion_uniform.size();
+        let casters =
+            (!volumes.casters.is_empty()).then(|| gpu.buffer("casters", &volumes.casters, BufferUsages::STORAGE));
+        let bytes =
+            vertices.size() + eye_uniform.size() + extrusion_uniform.size() + casters.as_ref().map_or(0, Buffer::size);
         Self {
             gpu,
             settings,
@@ -87,12 +109,13 @@ impl<'b> Builder<'b> {
             extrusion_uniform,
             corners: job.geometry.corners().cloned(),
             vertices,
+            casters,
             bytes,
         }
     }
 
-    /// Additions first, then subtractions, where faces take two passes.
-    pub(super) fn volume_draws(&mut self, side: Side, faces: &Faces) -> Vec<Draw> {
+    /// Additions first, then subtractions, where faces take two passes; `quads` for a vertex shader that unfolds them.
+    pub(super) fn volume_draws(&mut self, side: Side, faces: &Faces, quads: Option<&Quads>) -> Vec<Draw> {
         let counting = |inward| Counting {
             side,
             inward,
@@ -100,16 +123,18 @@ impl<'b> Builder<'b> {
             inclusive: self.settings.inclusive_compare,
         };
         let (outward, inward) = (counting(false), counting(true));
-        let shader = if self.settings.extrudes_on_gpu { VolumeShader::Extruded } else { VolumeShader::Given };
+        let shader = match self.settings.extrude {
+            Extrude::Cpu => VolumeShader::Given,
+            Extrude::Gpu => VolumeShader::Extruded,
+            Extrude::DegenerateQuads => return self.quad_draws(quads, [outward, inward]),
+        };
         let volume_faces = [faces.sides.as_slice(), &faces.back_caps].concat();
         let lists = [
             (Source::Volumes(shader), outward, self.indices(&volume_faces)),
             (Source::Scene, outward, self.indices(&faces.front_caps)),
             (Source::Scene, inward, self.indices(&faces.inward_front_caps)),
         ];
-        let halves: &[Option<Half>] =
-            if self.settings.two_pass { &[Some(Half::Additions), Some(Half::Subtractions)] } else { &[None] };
-        let order = halves.iter().flat_map(|half| lists.iter().map(move |list| (*half, list)));
+        let order = self.halves().iter().flat_map(|half| lists.iter().map(move |list| (*half, list)));
         order
             .filter_map(|(half, (source, counting, indices))| {
                 let (indices, count) = indices.clone()?;
@@ -118,12 +143,58 @@ impl<'b> Builder<'b> {
                     Source::Volumes(VolumeShader::Extruded) => {
                         bind(self.gpu, &pipeline, &[&self.eye_uniform, &self.extrusion_uniform])
                     }
-                    Source::Volumes(VolumeShader::Given) | Source::Scene => {
-                        bind(self.gpu, &pipeline, &[&self.eye_uniform])
-                    }
+                    _ => bind(self.gpu, &pipeline, &[&self.eye_uniform]),
                 };
                 let vertices = if *source == Source::Scene { self.corners.clone()? } else { self.vertices.clone() };
-                Some(Draw { pipeline, bindings, vertices, indices, count })
+                Some(self.draw(pipeline, bindings, Some([vertices, indices]), count))
+            })
+            .collect()
+    }
+
+    fn halves(&self) -> &'static [Option<Half>] {
+        if self.settings.two_pass { &[Some(Half::Additions), Some(Half::Subtractions)] } else { &[None] }
+    }
+
+    fn draw(&self, pipeline: RenderPipeline, bindings: BindGroup, buffers: Option<[Buffer; 2]>, count: u32) -> Draw {
+        // Volumes are drawn where the flag is set.
+        let stencil_reference = if self.settings.range_mask { FLAG } else { 0 };
+        Draw { pipeline, bindings, buffers, count, stencil_reference }
+    }
+
+    /// Faces that the vertex shader unfolds.
+    fn quad_draws(&mut self, quads: Option<&Quads>, [outward, inward]: [Counting; 2]) -> Vec<Draw> {
+        let (Some(quads), Some(casters)) = (quads, self.casters.clone()) else { return Vec::new() };
+        let lists: Vec<(Counting, Buffer, u32)> = [(outward, &quads.outward), (inward, &quads.inward)]
+            .into_iter()
+            .filter(|(_, faces)| !faces.is_empty())
+            .map(|(counting, faces)| {
+                let buffer = self.gpu.buffer("volume quads", faces, BufferUsages::STORAGE);
+                self.bytes += buffer.size();
+                (counting, buffer, 3 * faces.len() as u32)
+            })
+            .collect();
+        let order = self.halves().iter().flat_map(|half| lists.iter().map(move |list| (*half, list)));
+        order
+            .map(|(half, (counting, faces, count))| {
+                let pipeline = volume_pipeline(self.gpu, self.settings, Source::Quads, *counting, half);
+                let buffers = [&self.eye_uniform, &self.extrusion_uniform, &self.vertices, &casters, faces];
+                let bindings = bind(self.gpu, &pipeline, &buffers);
+                self.draw(pipeline, bindings, None, *count)
+            })
+            .collect()
+    }
+
+    /// Sets the flag from the first distance on and clears it from the second on.
+    pub(super) fn range_draws(&mut self, eye: &Eye, [from_m, to_m]: [f64; 2]) -> Vec<Draw> {
+        let bounds = [(from_m, FLAG), (to_m, 0)].into_iter().filter(|(distance_m, _)| distance_m.is_finite());
+        bounds
+            .map(|(distance_m, stencil_reference)| {
+                let pipeline = range_pipeline(self.gpu, self.settings);
+                let depth = eye.depth_at(distance_m);
+                let bound = self.gpu.uniform("range", BoundUniform { depth, padding: 0, more_padding: [0; 2] });
+                self.bytes += bound.size();
+                let bindings = bind(self.gpu, &pipeline, &[&bound]);
+                Draw { pipeline, bindings, buffers: None, count: 3, stencil_reference }
             })
             .collect()
     }
@@ -136,7 +207,7 @@ impl<'b> Builder<'b> {
         let matrix = self.gpu.uniform("near projection", clip_from_caster);
         self.bytes += matrix.size();
         let bindings = bind(self.gpu, &pipeline, &[&matrix]);
-        vec![Draw { pipeline, bindings, vertices, indices, count }]
+        vec![self.draw(pipeline, bindings, Some([vertices, indices]), count)]
     }
 
     /// An index list on the device; `None` if it is empty.
@@ -163,9 +234,9 @@ fn eye_uniform(eye: &Eye) -> EyeUniform {
     }
 }
 
-/// Uniforms bound in order.
-fn bind(gpu: &Gpu, pipeline: &RenderPipeline, uniforms: &[&Buffer]) -> BindGroup {
-    let resources: Vec<_> = uniforms.iter().map(|buffer| buffer.as_entire_binding()).collect();
+/// Buffers bound in order.
+fn bind(gpu: &Gpu, pipeline: &RenderPipeline, buffers: &[&Buffer]) -> BindGroup {
+    let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
     gpu.bind(&pipeline.get_bind_group_layout(0), &resources)
 }
 
@@ -183,6 +254,8 @@ mod tests {
         assert_eq!(wgsl_layout(files, "Eye"), eye);
         let extrusion = rust_layout!(ExtrusionUniform { light, length_m, padding, more_padding });
         assert_eq!(wgsl_layout(files, "Extrusion"), extrusion);
+        let (_, files) = modules.iter().find(|(label, _)| label == "volume range").unwrap();
+        assert_eq!(wgsl_layout(files, "Bound"), rust_layout!(BoundUniform { depth, padding, more_padding }));
         assert_ne!(eye, extrusion);
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Eye {
     pub(super) far_m: Option<f64>,
     /// World to clip, rounded.
     pub(super) clip_from_world: Mat4,
+    /// The row of z.
+    depth_row: DVec4,
     /// Depth of points at infinity; `None` with a finite far plane, where the matrix's own row puts them beyond it.
     pub(super) depth_at_infinity: Option<f32>,
     /// True where depth 1 is near.
@@ -54,6 +56,7 @@ impl Eye {
             size: scene.image_size,
             far_m,
             clip_from_world,
+            depth_row,
             depth_at_infinity,
             reversed: settings.reversed,
         })
@@ -62,6 +65,17 @@ impl Eye {
     /// The depth a cleared buffer holds: the far end.
     pub(super) fn clear_depth(&self) -> f32 {
         if self.reversed { 0.0 } else { 1.0 }
+    }
+
+    /// Depth of what lies that far along the view, between near and far end.
+    pub(super) fn depth_at(&self, distance_m: f64) -> f32 {
+        let distance_m = distance_m.max(self.camera.near_m);
+        (self.depth_row.w / distance_m - self.depth_row.z).clamp(0.0, 1.0) as f32
+    }
+
+    /// The middle of the near rectangle.
+    pub(super) fn near_centre(&self) -> DVec3 {
+        self.point_on_plane(0.5 * self.size.as_dvec2(), self.camera.near_m)
     }
 
     /// Where the ray through a pixel's centre meets the plane at `distance_m` along the view, rebased world.
@@ -151,6 +165,8 @@ mod tests {
             for plane in ["infinite", "finite", "clamp"] {
                 let eye = eye(&format!("volume:depth_convention={typed},far={plane}"));
                 assert!((depth(&eye, 0.1) - near).abs() < F32);
+                assert!((depth(&eye, 3.0) - f64::from(eye.depth_at(3.0))).abs() < F32);
+                assert!((f64::from(eye.depth_at(f64::INFINITY)) - far).abs() < F32);
                 assert!((depth(&eye, eye.far_m.unwrap_or(1e7)) - far).abs() < F32);
             }
         }

@@ -1,8 +1,10 @@
 //! What volumes settled on and how one pixel was counted, in words and numbers for people.
 
 use super::assembly::Faces;
+use super::casting::OpenEdge;
 use super::extrude::Reach;
 use super::prepared::PreparedVolume;
+use super::range::distances_m;
 use crate::technique::TechniqueError;
 
 type Facts = Vec<(String, String)>;
@@ -45,6 +47,13 @@ pub(super) fn facts(volume: &PreparedVolume<'_>) -> Facts {
         fact("far plane", volume.eye.far_m.map_or_else(|| "infinite".to_owned(), |far_m| format!("{far_m:.6} m"))),
     ];
     facts.extend(open_objects(volume));
+    if volume.settings.starts_at_eye_count {
+        facts.push(fact("counts start from", volume.start.to_string()));
+    }
+    if volume.settings.range_mask {
+        let [from_m, to_m] = distances_m(volume.job.light, &volume.eye);
+        facts.push(fact("range mask", format!("{from_m:.6} m to {to_m:.6} m along the view")));
+    }
     if volumes.fell_back {
         facts.push(fact("zp-plus", "light in the near plane: counted behind the surface instead".to_owned()));
     }
@@ -59,14 +68,25 @@ pub(super) fn facts(volume: &PreparedVolume<'_>) -> Facts {
 fn open_objects(volume: &PreparedVolume<'_>) -> Facts {
     /// More objects than this are only counted.
     const NAMED: usize = 8;
-    let objects = volume.volumes.objects.iter();
-    let open: Vec<_> = objects.filter(|object| object.light_facing_only && object.unbalanced_edges > 0).collect();
+    let open: Vec<_> = volume.volumes.objects.iter().filter(|object| object.is_open_and_one_sided()).collect();
     let named = open.iter().take(NAMED).map(|object| {
+        let edges = object.open_edges.iter().take(NAMED).map(|&edge| described(volume, edge));
+        let more = object.open_edges.len().saturating_sub(NAMED);
+        let edges = edges.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join("; ");
         let name = &volume.job.scene.meshes[object.mesh].name;
-        fact("open object cast one-sided", format!("{name}: {} open edges", object.unbalanced_edges))
+        fact("open object cast one-sided", format!("{name}: {} open edges: {edges}", object.open_edges.len()))
     });
     let rest = open.len().saturating_sub(NAMED);
     named.chain((rest > 0).then(|| fact("further open objects", rest.to_string()))).collect()
+}
+
+/// An edge and its ends in the scene file's coordinates.
+fn described(volume: &PreparedVolume<'_>, edge: OpenEdge) -> String {
+    let [from, to] = volume.ends_of(edge).map(|end| {
+        let end = end + volume.job.scene.origin_in_file;
+        format!("({:.6}, {:.6}, {:.6})", end.x, end.y, end.z)
+    });
+    format!("edge {} from {from} to {to}", edge.id)
 }
 
 /// How one pixel was counted.
@@ -90,6 +110,11 @@ pub(super) fn lookup_facts(volume: &PreparedVolume<'_>, pixel: u32) -> Result<Fa
     if volume.boundary_touches(pixel) {
         let what = "a volume's own surface meets it within 1/256 pixel and the depth's rounding";
         facts.push(fact("count edge", what.to_owned()));
+    }
+    if let Some((object, edge)) = volume.hole_before(&receiver) {
+        let name = &scene.meshes[object.mesh].name;
+        let what = format!("{name} is crossed from its back alone; nearest open {}", described(volume, edge));
+        facts.push(fact("open mesh", what));
     }
     facts.extend(crossed.iter().take(LISTED).map(|&triangle| {
         fact("inside the volume of", format!("triangle {triangle} of {}", scene.mesh_of(triangle).name))

@@ -16,12 +16,15 @@ mod extrude;
 mod eye;
 mod facts;
 mod near_projection;
+mod open_mesh;
 mod outline;
 mod params;
 mod passes;
 mod pipelines;
 mod prepared;
 mod pyramid;
+mod quads;
+mod range;
 mod remedies;
 mod replay;
 mod scissor;
@@ -31,9 +34,12 @@ mod states;
 mod volumes;
 mod winding;
 
+#[cfg(test)]
+mod order_tests;
+
 pub use pipelines::shader_modules;
 pub use prepared::{PixelCounts, PreparedVolume};
-pub use settings::{Caps, CasterSides, Count, FarPlane, Format, Length, Settings};
+pub use settings::{Caps, CasterSides, Count, Extrude, FarPlane, Format, Length, Settings};
 
 use super::param::Param;
 use super::{Job, Prepared, Spec, Technique, TechniqueError, Unsupported};
@@ -70,6 +76,17 @@ impl Technique for Volume {
         }
         if settings.count == Count::ZpPlus && settings.reach.is_some() {
             let why = "count=zp-plus projects casters through the near plane however far volumes reach; it needs extrusion=infinite".to_owned();
+            return Err(Unsupported::Degenerate { why });
+        }
+        if settings.range_mask && settings.clamps_stencil {
+            let why =
+                "range_mask=on keeps its flag above the count, where stencil_ops=clamp does not stop at 0".to_owned();
+            return Err(Unsupported::Degenerate { why });
+        }
+        if settings.extrude == Extrude::DegenerateQuads && settings.away_facing_back_cap {
+            let why =
+                "extrude=degenerate-quads closes volumes with reversed casters; it needs back_cap=reversed-facing"
+                    .to_owned();
             return Err(Unsupported::Degenerate { why });
         }
         eye::Eye::new(scene, &settings).map(|_| ())

@@ -49,8 +49,22 @@ pub(super) static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             &["reversed-facing", "away-facing"],
             "which triangles close a volume's far end; away-facing is wrong around a light inside a mesh",
         ),
-        choice("extrude", &["cpu", "gpu"], "where vertices are moved away from the light"),
+        choice(
+            "extrude",
+            &["cpu", "gpu", "degenerate-quads"],
+            "where vertices are moved away from the light; degenerate-quads: where silhouettes are found, too",
+        ),
         choice("scissor", &["off", "on"], "draw only where the light's range reaches in the picture"),
+        choice(
+            "range_mask",
+            &["off", "on"],
+            "draw only where what is seen is as deep as the light's range reaches; the stencil then counts modulo 128",
+        ),
+        choice(
+            "stencil_init",
+            &["zero", "eye-count"],
+            "where counting before the surface starts; eye-count: with the volumes around the near plane's middle",
+        ),
         choice("depth_convention", &["reversed", "forward"], "which end of the depth range is near the camera"),
         choice("format", &["depth32float-stencil8", "depth24plus-stencil8"], "the camera's depth and stencil buffer"),
     ]

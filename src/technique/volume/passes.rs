@@ -4,6 +4,7 @@ use super::assembly::Faces;
 use super::draws::{Builder, Draw, eye_buffer};
 use super::eye::Eye;
 use super::pipelines::{resolve_pipeline, scene_pipeline};
+use super::range::distances_m;
 use super::scissor::Rectangle;
 use super::settings::{FarPlane, Format, Settings};
 use super::states::Side;
@@ -25,6 +26,10 @@ pub(super) struct VolumePasses {
     resolve: ComputePipeline,
     resolve_bindings: Vec<BindGroup>,
     buffer_bytes: u64,
+    /// The stencil's bits that count.
+    counting_mask: u8,
+    /// What every count starts from.
+    start: u8,
 }
 
 impl VolumePasses {
@@ -35,33 +40,51 @@ impl VolumePasses {
         eye: &Eye,
         volumes: &Volumes,
         receivers: &ReceiverBuffer,
+        start: i64,
     ) -> Result<Self, GpuError> {
         check_size(job.gpu, volumes)?;
-        let passes =
-            job.gpu.scoped("the shadow volumes' set-up", || Self::build(job, settings, eye, volumes, receivers))?;
+        let start = start.rem_euclid(1 << settings.counting_bits()) as u8;
+        let passes = job
+            .gpu
+            .scoped("the shadow volumes' set-up", || Self::build(job, settings, eye, volumes, receivers, start))?;
         passes.draw_scene(job, settings, eye)?;
         Ok(passes)
     }
 
-    fn build(job: &Job<'_>, settings: &Settings, eye: &Eye, volumes: &Volumes, receivers: &ReceiverBuffer) -> Self {
+    fn build(
+        job: &Job<'_>,
+        settings: &Settings,
+        eye: &Eye,
+        volumes: &Volumes,
+        receivers: &ReceiverBuffer,
+        start: u8,
+    ) -> Self {
         let size = job.scene.image_size;
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let buffer = job.gpu.texture("depth and stencil", size, settings.format.texture_format(), usage);
         let mut builder = Builder::new(job, settings, eye, volumes);
         let mut passes = Vec::new();
+        if settings.range_mask {
+            passes.push(("range mask", builder.range_draws(eye, distances_m(job.light, eye))));
+        }
         if let Some((clip_from_caster, corners)) = &volumes.near_casters {
             passes.push(("near counts", builder.near_draws(*clip_from_caster, corners)));
         }
-        for (name, side, faces) in
-            [("z-fail volumes", Side::Behind, &volumes.behind), ("z-pass volumes", Side::Before, &volumes.before)]
-        {
-            let draws = builder.volume_draws(side, faces);
+        let [quads_behind, quads_before] = volumes.quads.as_ref().map_or([None; 2], |quads| quads.each_ref().map(Some));
+        for (name, side, faces, quads) in [
+            ("z-fail volumes", Side::Behind, &volumes.behind, quads_behind),
+            ("z-pass volumes", Side::Before, &volumes.before, quads_before),
+        ] {
+            let draws = builder.volume_draws(side, faces, quads);
             // A count without any volume still has to clear the stencil.
             if !draws.is_empty() || (side == Side::Before && passes.is_empty()) {
                 passes.push((name, draws));
             }
         }
         let resolve = resolve_pipeline(job.gpu);
+        let counting_mask = u8::MAX >> (u8::BITS - settings.counting_bits());
+        let counting = job.gpu.uniform("counting", [u32::from(counting_mask), 0, 0, 0]);
+        builder.bytes += counting.size();
         let counts = buffer.create_view(&TextureViewDescriptor {
             aspect: TextureAspect::StencilOnly,
             ..TextureViewDescriptor::default()
@@ -71,6 +94,7 @@ impl VolumePasses {
                 chunk.receivers.as_entire_binding(),
                 chunk.visibilities.as_entire_binding(),
                 BindingResource::TextureView(&counts),
+                counting.as_entire_binding(),
             ];
             job.gpu.bind(&resolve.get_bind_group_layout(0), &resources)
         });
@@ -83,6 +107,8 @@ impl VolumePasses {
             },
             resolve_bindings: resolve_bindings.collect(),
             buffer_bytes: builder.bytes,
+            counting_mask,
+            start,
             buffer,
             passes,
             resolve,
@@ -112,7 +138,7 @@ impl VolumePasses {
         let recorder = gpu.scoped("recording the shadow volumes", || {
             let mut recorder = Recorder::new(gpu);
             for (index, (name, draws)) in self.passes.iter().enumerate() {
-                let stencil = if index == 0 { LoadOp::Clear(0) } else { LoadOp::Load };
+                let stencil = if index == 0 { LoadOp::Clear(self.start.into()) } else { LoadOp::Load };
                 recorder.render(name, &[], Some(self.attachment(None, stencil)), |pass| self.draw(pass, draws));
             }
             recorder.compute("resolve", |pass| {
@@ -147,7 +173,8 @@ impl VolumePasses {
 
     /// The counts that the last run left, one per pixel, row by row from the top.
     pub(super) fn stencil(&self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
-        gpu.read_stencil(&self.buffer, "reading the stencil")
+        let stencil = gpu.read_stencil(&self.buffer, "reading the stencil")?;
+        Ok(stencil.into_iter().map(|count| count & self.counting_mask).collect())
     }
 
     /// The pixels that are drawn.
@@ -182,9 +209,13 @@ fn check_size(gpu: &Gpu, volumes: &Volumes) -> Result<(), GpuError> {
     let limit = gpu.limits().buffer_bytes;
     let indices = |faces: &Faces| (faces.sides.len() + faces.back_caps.len()) * size_of::<u32>();
     let asked = size_of_val(volumes.vertices.as_slice()).max(indices(&volumes.behind)).max(indices(&volumes.before));
+    let too_large = |what: &str, asked: usize, limit| {
+        Err(GpuError::TooLarge { what: format!("{what} in bytes of one buffer"), asked: asked as u64, limit })
+    };
     if asked as u64 > limit {
-        let what = "shadow volumes in bytes of one buffer".to_owned();
-        return Err(GpuError::TooLarge { what, asked: asked as u64, limit });
+        return too_large("shadow volumes", asked, limit);
     }
-    Ok(())
+    let quads = volumes.quads.iter().flatten().map(|quads| size_of_val(quads.outward.as_slice()));
+    let (asked, limit) = (quads.max().unwrap_or(0), gpu.limits().storage_binding_bytes);
+    if asked as u64 > limit { too_large("degenerate quads", asked, limit) } else { Ok(()) }
 }

@@ -1,6 +1,7 @@
 //! Pipelines of shadow volumes. Everything that writes or compares depth runs the same vertex code, so that a cap has
 //! the depth of the surface it lies on, bit for bit.
 
+use super::range::FLAG;
 use super::settings::Settings;
 use super::states::{Counting, Half, Side};
 use crate::gpu::shader::{Wgsl, wgsl};
@@ -12,7 +13,10 @@ use wgpu::{
 
 const CLIP: Wgsl = wgsl!("volume/clip.wgsl");
 const GIVEN: Wgsl = wgsl!("volume/given.wgsl");
+const EXTRUSION: Wgsl = wgsl!("volume/extrusion.wgsl");
 const EXTRUDED: Wgsl = wgsl!("volume/extruded.wgsl");
+const QUADS: Wgsl = wgsl!("volume/quads.wgsl");
+const RANGE: Wgsl = wgsl!("volume/range.wgsl");
 const NEAR: Wgsl = wgsl!("volume/near.wgsl");
 const RESOLVE: Wgsl = wgsl!("volume/resolve.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
@@ -22,7 +26,9 @@ const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     [
         ("volume given", vec![CLIP, GIVEN]),
-        ("volume extruded", vec![CLIP, EXTRUDED]),
+        ("volume extruded", vec![CLIP, EXTRUSION, EXTRUDED]),
+        ("volume quads", vec![CLIP, EXTRUSION, QUADS]),
+        ("volume range", vec![RANGE]),
         ("volume near", vec![NEAR]),
         ("volume resolve", vec![RECEIVER, RESOLVE]),
     ]
@@ -37,6 +43,8 @@ pub(super) enum Source {
     Scene,
     /// Volume vertices.
     Volumes(VolumeShader),
+    /// Faces that the vertex shader unfolds.
+    Quads,
 }
 
 /// How volume vertices become positions.
@@ -55,14 +63,19 @@ const VOLUME_LAYOUT: VertexBufferLayout<'static> = VertexBufferLayout {
 };
 
 impl Source {
-    fn files(self) -> [Wgsl; 2] {
+    fn files(self) -> Vec<Wgsl> {
         match self {
-            Self::Scene | Self::Volumes(VolumeShader::Given) => [CLIP, GIVEN],
-            Self::Volumes(VolumeShader::Extruded) => [CLIP, EXTRUDED],
+            Self::Scene | Self::Volumes(VolumeShader::Given) => vec![CLIP, GIVEN],
+            Self::Volumes(VolumeShader::Extruded) => vec![CLIP, EXTRUSION, EXTRUDED],
+            Self::Quads => vec![CLIP, EXTRUSION, QUADS],
         }
     }
-    fn layout(self) -> VertexBufferLayout<'static> {
-        if self == Self::Scene { CORNER_LAYOUT } else { VOLUME_LAYOUT }
+    fn layout(self) -> Option<VertexBufferLayout<'static>> {
+        match self {
+            Self::Scene => Some(CORNER_LAYOUT),
+            Self::Volumes(_) => Some(VOLUME_LAYOUT),
+            Self::Quads => None,
+        }
     }
 }
 
@@ -82,7 +95,7 @@ pub(super) fn volume_pipeline(
     half: Option<Half>,
 ) -> RenderPipeline {
     let [front, back] = counting.faces();
-    let stencil = StencilState { front, back, read_mask: !0, write_mask: !0 };
+    let stencil = counting_state(settings, [front, back]);
     let depth_stencil = depth_stencil(settings, false, counting.depth_compare(settings.reversed), stencil);
     // What lies before the near plane must not be counted before the surface; behind it, it never is.
     let unclipped = settings.far.clamps() && counting.side == Side::Behind;
@@ -95,9 +108,34 @@ pub(super) fn near_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
     let pass_op =
         if settings.clamps_stencil { StencilOperation::IncrementClamp } else { StencilOperation::IncrementWrap };
     let add = StencilFaceState { compare: CompareFunction::Always, pass_op, ..StencilFaceState::IGNORE };
-    let stencil = StencilState { front: add, back: add, read_mask: !0, write_mask: !0 };
+    let stencil = counting_state(settings, [add, add]);
     let depth_stencil = depth_stencil(settings, false, CompareFunction::Always, stencil);
-    pipeline(gpu, "near counts", &[NEAR], CORNER_LAYOUT, primitive(None, false), depth_stencil)
+    pipeline(gpu, "near counts", &[NEAR], Some(CORNER_LAYOUT), primitive(None, false), depth_stencil)
+}
+
+/// Where what is seen lies behind the triangle, or at its depth, the flag becomes that of the stencil's reference.
+pub(super) fn range_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
+    let compare = if settings.reversed { CompareFunction::GreaterEqual } else { CompareFunction::LessEqual };
+    let replace = StencilFaceState {
+        compare: CompareFunction::Always,
+        pass_op: StencilOperation::Replace,
+        ..StencilFaceState::IGNORE
+    };
+    let stencil = StencilState { front: replace, back: replace, read_mask: 0, write_mask: FLAG.into() };
+    let depth_stencil = depth_stencil(settings, false, compare, stencil);
+    pipeline(gpu, "range mask", &[RANGE], None, primitive(None, false), depth_stencil)
+}
+
+/// Counts with the bits that count; under a range mask only where the flag is set.
+fn counting_state(settings: &Settings, faces: [StencilFaceState; 2]) -> StencilState {
+    let [front, back] = faces;
+    if settings.range_mask {
+        let flagged = |face| StencilFaceState { compare: CompareFunction::Equal, ..face };
+        let (read_mask, write_mask) = (FLAG.into(), (!FLAG).into());
+        StencilState { front: flagged(front), back: flagged(back), read_mask, write_mask }
+    } else {
+        StencilState { front, back, read_mask: !0, write_mask: !0 }
+    }
 }
 
 /// Turns counts into visibilities.
@@ -128,10 +166,11 @@ fn pipeline(
     gpu: &Gpu,
     label: &str,
     files: &[Wgsl],
-    layout: VertexBufferLayout<'static>,
+    layout: Option<VertexBufferLayout<'static>>,
     primitive: PrimitiveState,
     depth_stencil: DepthStencilState,
 ) -> RenderPipeline {
-    let (vertices, depth_stencil) = (&[Some(layout)], Some(depth_stencil));
+    let vertices: Vec<_> = layout.into_iter().map(Some).collect();
+    let (vertices, depth_stencil) = (vertices.as_slice(), Some(depth_stencil));
     gpu.render_pipeline(&Drawing { label, files, vertices, primitive, depth_stencil, ..Drawing::default() })
 }

@@ -3,6 +3,7 @@
 use super::count::{Count, Counter};
 use super::eye::Eye;
 use super::passes::VolumePasses;
+use super::range::distances_m;
 use super::settings::{FarPlane, Settings};
 use super::states::Side;
 use super::volumes::Volumes;
@@ -20,6 +21,8 @@ pub struct PreparedVolume<'j> {
     pub(super) eye: Eye,
     pub(super) volumes: Volumes,
     pub(super) counter: Counter<'j>,
+    /// What counting starts from: the volumes counted before the surface that hold the near rectangle's middle.
+    pub(super) start: i64,
     pub(super) passes: VolumePasses,
     receivers: ReceiverBuffer,
 }
@@ -31,7 +34,7 @@ impl std::fmt::Debug for PreparedVolume<'_> {
 }
 
 /// What the stencil should hold at one pixel, one approximation after the other. Each is a number of volumes, which a
-/// stencil of 8 bits keeps modulo 256.
+/// stencil of 8 bits keeps modulo 256, or 128 under a range mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PixelCounts {
     /// Casting triangles in use that the segment from the receiver to the light crosses.
@@ -40,8 +43,10 @@ pub struct PixelCounts {
     pub reached: i64,
     /// With counts that begin at the near plane instead of outside all volumes.
     pub from_near: i64,
-    /// With nothing drawn outside the scissor.
+    /// With nothing drawn outside the scissor and the range mask.
     pub drawn: i64,
+    /// Bits of the stencil that count.
+    pub bits: u32,
     /// True if the segment runs through an edge or a corner of the casters, where the count may be off by rounding.
     pub is_tied: bool,
 }
@@ -50,7 +55,7 @@ impl PixelCounts {
     /// What a stencil that wraps holds.
     #[must_use]
     pub fn stencil(&self) -> u8 {
-        self.drawn.rem_euclid(1 << u8::BITS) as u8
+        self.drawn.rem_euclid(1 << self.bits) as u8
     }
 }
 
@@ -64,8 +69,13 @@ impl<'j> PreparedVolume<'j> {
         let volumes = Volumes::new(job.scene, job.light, &settings, &eye);
         let counter = Counter::new(job.scene, job.light, job.casters, job.adjacency, &volumes);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &receivers)?;
-        Ok(Self { job, settings, eye, volumes, counter, passes, receivers })
+        let start = if settings.starts_at_eye_count && volumes.near_casters.is_none() {
+            counter.at(eye.near_centre(), None).before
+        } else {
+            0
+        };
+        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &receivers, start)?;
+        Ok(Self { job, settings, eye, volumes, counter, start, passes, receivers })
     }
 
     /// The stencil that the last run left, one value per pixel, row by row from the top.
@@ -102,15 +112,23 @@ impl<'j> PreparedVolume<'j> {
         let starts_at_near = self.volumes.sides.contains(&Side::Before) && self.volumes.near_casters.is_none();
         let at_near = if starts_at_near { self.counter.at(self.eye.near_point(pixel), None) } else { Count::default() };
         let reached = at_surface.reached() - cut_at_far.behind;
-        let from_near = reached - at_near.before;
-        let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x);
+        let from_near = reached - at_near.before + self.start;
+        let is_drawn = self.passes.scissor().contains(pixel, self.job.receivers.size.x) && self.is_in_range(receiver);
         PixelCounts {
             crossed: at_receiver.endless,
             reached,
             from_near,
-            drawn: if is_drawn { from_near } else { 0 },
+            drawn: if is_drawn { from_near } else { self.start },
+            bits: self.settings.counting_bits(),
             is_tied: [at_surface, cut_at_far, at_near].iter().any(|count| count.is_tied),
         }
+    }
+
+    /// Whether what a pixel shows is as deep as the range mask lets volumes be drawn.
+    fn is_in_range(&self, receiver: &Receiver) -> bool {
+        let [from_m, to_m] = distances_m(self.job.light, &self.eye);
+        let distance_m = self.eye.distance_m(receiver.point_in_world);
+        !self.settings.range_mask || (from_m..to_m).contains(&distance_m)
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -120,7 +138,7 @@ impl<'j> PreparedVolume<'j> {
     /// The stencil that other settings leave for the same question.
     pub(super) fn stencil_under(&self, settings: &Settings) -> Result<Vec<u8>, TechniqueError> {
         let volumes = Volumes::new(self.job.scene, self.job.light, settings, &self.eye);
-        let passes = VolumePasses::new(&self.job, settings, &self.eye, &volumes, &self.receivers)?;
+        let passes = VolumePasses::new(&self.job, settings, &self.eye, &volumes, &self.receivers, self.start)?;
         passes.run(self.job.gpu, &self.receivers)?;
         Ok(passes.stencil(self.job.gpu)?)
     }

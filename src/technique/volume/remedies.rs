@@ -7,12 +7,18 @@ use crate::technique::Spec;
 pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
     let changes: &[(&str, &str)] = match cause {
         Cause::OpenMesh => &[("caster_sides", "auto"), ("caster_sides", "all")],
-        Cause::ClippingNear => &[("count", "mixed"), ("count", "z-fail"), ("count", "zp-plus")],
-        Cause::ClippingFar => &[("far", "infinite"), ("far", "clamp"), ("extrusion", "infinite"), ("length_m", "auto")],
-        Cause::ClippingFrustum => &[("scissor", "off")],
-        Cause::StencilOverflow => {
-            &[("stencil_ops", "wrap"), ("caster_sides", "auto"), ("shape", "silhouette"), ("count", "z-fail")]
+        Cause::ClippingNear => {
+            &[("count", "mixed"), ("count", "z-fail"), ("count", "zp-plus"), ("stencil_init", "eye-count")]
         }
+        Cause::ClippingFar => &[("far", "infinite"), ("far", "clamp"), ("extrusion", "infinite"), ("length_m", "auto")],
+        Cause::ClippingFrustum => &[("scissor", "off"), ("range_mask", "off")],
+        Cause::StencilOverflow => &[
+            ("stencil_ops", "wrap"),
+            ("range_mask", "off"),
+            ("caster_sides", "auto"),
+            ("shape", "silhouette"),
+            ("count", "z-fail"),
+        ],
         Cause::TechniqueModel => &[("cap_compare", "strict"), ("caps", "auto"), ("back_cap", "reversed-facing")],
         Cause::Precision => {
             &[("depth_convention", "reversed"), ("format", "depth32float-stencil8"), ("count", "z-fail")]

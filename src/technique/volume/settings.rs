@@ -25,10 +25,14 @@ pub struct Settings {
     pub inclusive_compare: bool,
     /// True to close volumes with the triangles turned away from the light, which is wrong around a light inside.
     pub away_facing_back_cap: bool,
-    /// True to move vertices in the vertex shader.
-    pub extrudes_on_gpu: bool,
+    /// Where vertices are moved away from the light.
+    pub extrude: Extrude,
     /// True to draw only where the light's range reaches.
     pub scissor: bool,
+    /// True to draw only where what is seen is as deep as the light's range reaches.
+    pub range_mask: bool,
+    /// True to start counting before the surface with the volumes around the near plane's middle.
+    pub starts_at_eye_count: bool,
     /// True where depth 1 is near.
     pub reversed: bool,
     /// The depth buffer's format.
@@ -57,6 +61,17 @@ pub enum CasterSides {
     LightFacing,
     /// Every one that the light does not see edge-on.
     All,
+}
+
+/// Where vertices are moved away from the light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extrude {
+    /// Before they are uploaded.
+    Cpu,
+    /// In the vertex shader.
+    Gpu,
+    /// In the vertex shader, which is given every edge and decides which of them are silhouettes.
+    DegenerateQuads,
 }
 
 /// A length that may be left to gnomon.
@@ -138,8 +153,14 @@ impl Settings {
             },
             inclusive_compare: is("cap_compare", "inclusive"),
             away_facing_back_cap: is("back_cap", "away-facing"),
-            extrudes_on_gpu: is("extrude", "gpu"),
+            extrude: match spec.choice("extrude").0 {
+                "gpu" => Extrude::Gpu,
+                "degenerate-quads" => Extrude::DegenerateQuads,
+                _ => Extrude::Cpu,
+            },
             scissor: is("scissor", "on"),
+            range_mask: is("range_mask", "on"),
+            starts_at_eye_count: is("stencil_init", "eye-count"),
             reversed: is("depth_convention", "reversed"),
             format: match spec.choice("format").0 {
                 "depth24plus-stencil8" => Format::Depth24PlusStencil8,
@@ -155,6 +176,12 @@ impl Settings {
     pub fn with_sound_caps(&self) -> Option<Self> {
         let sound = Self { caps: Caps::Auto, inclusive_compare: false, away_facing_back_cap: false, ..*self };
         (sound != *self).then_some(sound)
+    }
+
+    /// Bits of the stencil that count; the range mask takes the highest.
+    #[must_use]
+    pub fn counting_bits(&self) -> u32 {
+        u8::BITS - u32::from(self.range_mask)
     }
 
     /// The same volumes counted by a stencil that wraps; `None` if it does.

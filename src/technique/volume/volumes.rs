@@ -6,7 +6,8 @@ use super::extrude::{Reach, extrude};
 use super::eye::Eye;
 use super::near_projection::clip_from_caster;
 use super::pyramid::Pyramid;
-use super::settings::{Caps, Count, Length, Settings};
+use super::quads::{Caster, Quads, casters};
+use super::settings::{Caps, Count, Extrude, Length, Settings};
 use super::states::Side;
 use crate::inspect::weld;
 use crate::scene::{Light, Scene};
@@ -36,6 +37,10 @@ pub(super) struct Volumes {
     light: DVec4,
     /// True if vertices are moved by the vertex shader.
     extrudes_on_gpu: bool,
+    /// Casters as the vertex shader asks about them; empty unless it unfolds quads.
+    pub(super) casters: Vec<Caster>,
+    /// What it unfolds, counted behind the surface and before it.
+    pub(super) quads: Option<[Quads; 2]>,
     /// True where zp-plus fell back to counting behind, because the light lies in the near plane.
     pub(super) fell_back: bool,
 }
@@ -80,6 +85,8 @@ impl Volumes {
             let chosen = objects.iter().zip(&sides).filter(|(_, side)| **side == wanted).map(|(object, _)| object);
             let mut faces = plan.faces(scene, chosen, welded.count);
             let (front, back) = caps(settings.caps, wanted, reach);
+            faces.has_front_caps = front;
+            faces.has_back_caps = back && !plan.ends_in_a_point();
             if !front {
                 faces.front_caps.clear();
                 faces.inward_front_caps.clear();
@@ -90,6 +97,13 @@ impl Volumes {
             faces
         };
         let (behind, before) = (faces(Side::Behind), faces(Side::Before));
+        let quads = |wanted: Side, faces: &Faces| {
+            let chosen = objects.iter().zip(&sides).filter(|(_, side)| **side == wanted).map(|(object, _)| object);
+            Quads::new(scene, &welded, chosen, settings.per_triangle, faces)
+        };
+        let unfolds = settings.extrude == Extrude::DegenerateQuads;
+        let quads = unfolds.then(|| [quads(Side::Behind, &behind), quads(Side::Before, &before)]);
+        let casters = if unfolds { casters(scene, &welded) } else { Vec::new() };
         let corners = |object: &CastingObject| -> Vec<u32> {
             object.used.iter().flat_map(|triangle| [3 * triangle, 3 * triangle + 1, 3 * triangle + 2]).collect()
         };
@@ -105,7 +119,9 @@ impl Volumes {
             before,
             near_casters,
             light: homogeneous,
-            extrudes_on_gpu: settings.extrudes_on_gpu,
+            extrudes_on_gpu: settings.extrude != Extrude::Cpu,
+            casters,
+            quads,
             fell_back,
             objects,
         }

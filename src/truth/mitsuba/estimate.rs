@@ -37,8 +37,9 @@ pub struct Estimate {
 }
 
 /// Error of a share counted over `samples` fixed points: docs/truth.md#area-lights, times [`EDGES`].
-fn discrepancy(samples: u32) -> f64 {
-    EDGES * 0.5 / f64::from(samples).sqrt()
+#[must_use]
+pub fn discrepancy(samples: usize) -> f64 {
+    EDGES * 0.5 / (samples as f64).sqrt()
 }
 
 impl Mitsuba {
@@ -69,7 +70,7 @@ impl Mitsuba {
             })
             .collect();
         let known: Vec<_> = spread(known.len(), PIXELS).into_iter().map(|index| known[index]).collect();
-        let discrepancy = discrepancy(samples);
+        let discrepancy = discrepancy(samples as usize);
         let vectors = |of: fn(&Receiver) -> DVec3| known.iter().flat_map(move |(_, r, _)| of(r).to_array());
         let about = json!({
             "task": "estimate", "centre": position.as_dvec3().to_array(), "radius_m": f64::from(radius_m),

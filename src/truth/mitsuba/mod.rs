@@ -7,11 +7,13 @@
 mod blocks;
 mod check;
 mod estimate;
+mod image;
 mod process;
 mod reason;
 
 pub use check::{ListedRay, MitsubaCheck, Verdict};
-pub use estimate::Estimate;
+pub use estimate::{Estimate, discrepancy};
+pub use image::{Flip, Rendering};
 pub use process::FOLDER_VARIABLE;
 pub use reason::Reason;
 

@@ -1,0 +1,172 @@
+//! Sampled soft shadows against the penumbra of a half plane worked out on paper, against the truth, and what their
+//! ledger says.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
+
+mod support;
+
+use glam::DVec2;
+use gnomon::cause::Cause;
+use gnomon::mask::Mask;
+use gnomon::scene::Scene;
+use support::scenes::{scene_of_texts, shipped};
+use support::shot::{Shot, parsed};
+
+const SIDE: f64 = 1.0;
+const LAMP_HEIGHT: f64 = 4.0;
+const EDGE_HEIGHT: f64 = 1.0;
+/// Receivers and corners are rounded to f32, and rasterisers snap to 1/256 pixel: metres on the floor.
+const SNAP_M: f64 = 2e-4;
+
+/// A square lamp over a floor, and between them the half plane beyond a line through (0, 0), turned by `tilt_deg` about
+/// the vertical. The camera looks under it.
+fn half_plane(tilt_deg: f64, side: f64, gap: f64) -> Scene {
+    let (across, along) = (DVec2::from_angle(tilt_deg.to_radians()), DVec2::from_angle(tilt_deg.to_radians()).perp());
+    let corner = |at: DVec2| format!("v {} {gap} {}\n", at.x, at.y);
+    let far = 30.0;
+    let plate = [-far * along, far * along, far * (across + along), far * (across - along)].map(corner).concat();
+    let model = format!("o Floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\no Plate\n{plate}f 5 6 7 8\n");
+    let scene = format!(
+        "about = \"a half plane under a lamp\"\nsize = [128, 96]\n\
+         [camera]\neye = [-1.5, 0.8, 0.02]\ntarget = [0, 0, 0.01]\nfov_y_deg = 40\n\
+         [[mesh]]\nfile = \"model.obj\"\n\
+         [[light]]\nname = \"lamp\"\nkind = \"rectangle\"\nposition = [0, {LAMP_HEIGHT}, 0]\ntarget = [0, 0, 0]\n\
+         width = {side}\nheight = {side}\nsamples = 64\n"
+    );
+    scene_of_texts(&scene, &model)
+}
+
+/// Each floor point's place across the edge with its visibility.
+fn across_edge(shot: &Shot<'_>, mask: &Mask, tilt_deg: f64) -> Vec<(f64, f64)> {
+    let direction = DVec2::from_angle(tilt_deg.to_radians());
+    let receivers = &shot.view.receivers.pixels;
+    let on_floor = receivers.iter().zip(&mask.pixels).filter_map(|(receiver, visibility)| {
+        let point = (*receiver)?.point_in_world;
+        (point.y.abs() < 1e-6).then_some((DVec2::new(point.x, point.z).dot(direction), f64::from((*visibility)?.get())))
+    });
+    on_floor.collect()
+}
+
+/// The visible share of the square lamp for a floor point `x` across the edge.
+fn share(tilt_deg: f64, x: f64) -> f64 {
+    let line = x - x * LAMP_HEIGHT / EDGE_HEIGHT;
+    let tilt = tilt_deg.to_radians();
+    let (c, s) = (tilt.cos(), tilt.sin());
+    let offset = line / SIDE + 0.5 * (c + s);
+    if s < 1e-12 {
+        return offset.clamp(0.0, 1.0);
+    }
+    let triangle = |t: f64| 0.5 * t.max(0.0).powi(2);
+    (triangle(offset) - triangle(offset - c) - triangle(offset - s) + triangle(offset - c - s)) / (c * s)
+}
+
+/// The largest difference from the paper's share, over all places within the snap of each point.
+fn worst(points: &[(f64, f64)], tilt_deg: f64) -> f64 {
+    let error = |&(x, visibility): &(f64, f64)| {
+        let near = [x - SNAP_M, x, x + SNAP_M].map(|x| (visibility - share(tilt_deg, x)).abs());
+        near.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    points.iter().map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn n_by_n_midpoints_miss_the_penumbra_by_half_a_row_at_most() {
+    for tilt_deg in [0.0, 10.0, 26.57, 45.0] {
+        let scene = half_plane(tilt_deg, SIDE, EDGE_HEIGHT);
+        let shot = Shot::new(&scene, "lamp");
+        for n in [1_u32, 2, 4, 8] {
+            let spec = format!("soft:pattern=grid-midpoint,samples={},inner=(volume)", n * n);
+            let points = across_edge(&shot, &shot.evaluate(&spec).mask, tilt_deg);
+            let error = worst(&points, tilt_deg);
+            let bound = 0.5 / f64::from(n);
+            assert!(error <= bound + 1e-9, "{tilt_deg} degrees, {n} x {n}: {error}");
+            if tilt_deg == 0.0 {
+                assert!(error > 0.8 * bound, "{n} x {n}: {error}: too good to be n x n");
+                let mut levels: Vec<u64> = points.iter().map(|(_, v)| v.to_bits()).collect();
+                levels.sort_unstable();
+                levels.dedup();
+                assert_eq!(levels.len(), n as usize + 1, "levels of {n} x {n}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_penumbra_is_monotone_as_wide_as_predicted_and_ends_in_light_and_umbra() {
+    for gap in [0.05_f64, 0.5, 1.0] {
+        let scene = half_plane(0.0, SIDE, gap);
+        let shot = Shot::new(&scene, "lamp");
+        let mut points = across_edge(&shot, &shot.evaluate("soft:samples=64,inner=(volume)").mask, 0.0);
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        assert!(points.windows(2).all(|pair| pair[1].1 <= pair[0].1 || pair[1].0 - pair[0].0 < SNAP_M), "{gap}");
+        assert_eq!((points.first().unwrap().1, points.last().unwrap().1), (1.0, 0.0));
+        let width = points.iter().rfind(|p| p.1 > 0.0).unwrap().0 - points.iter().find(|p| p.1 < 1.0).unwrap().0;
+        let predicted = SIDE * gap / (LAMP_HEIGHT - gap);
+        // The outer sixty-fourths are dark or lit already, and the picture has pixels.
+        assert!((width - predicted * 63.0 / 64.0).abs() < 0.03 + SNAP_M, "gap {gap}: {width}, not {predicted}");
+    }
+}
+
+#[test]
+fn a_light_without_size_leaves_the_inner_hard_shadow() {
+    let scene = half_plane(10.0, 1e-6, EDGE_HEIGHT);
+    let shot = Shot::new(&scene, "lamp");
+    for inner in ["volume", "map:size=256,filter=pcf-box2,fov_deg=60"] {
+        let soft = shot.evaluate(&format!("soft:samples=9,inner=({inner})")).mask;
+        let hard = shot.evaluate(inner).mask;
+        let differing = soft.pixels.iter().zip(&hard.pixels).filter(|(a, b)| a != b).count();
+        // The light is moved by up to half a micrometre: a point on the very edge may change sides.
+        assert!(differing <= 2, "{inner}: {differing} pixels");
+    }
+    let other = shot.evaluate("soft:samples=9,inner=(map:size=16,fov_deg=60)").mask;
+    assert_ne!(other, shot.evaluate("volume").mask, "the comparison sees another technique");
+}
+
+#[test]
+fn the_truths_own_points_leave_nothing_but_inner_errors() {
+    let scene = shipped("area", [160, 120]);
+    let shot = Shot::new(&scene, "panel");
+    let evaluation = shot.evaluate("soft:samples=36,inner=(volume)");
+    assert!(evaluation.verdict.pixels.differing <= 2, "{:?}", evaluation.verdict.pixels);
+    let other_points = shot.evaluate("soft:samples=36,pattern=hammersley,inner=(volume)");
+    assert!(other_points.verdict.pixels.differing > 100, "{:?}", other_points.verdict.pixels);
+    assert!(other_points.verdict.error.mean_abs < shot.evaluate("volume").verdict.error.mean_abs);
+}
+
+#[test]
+fn the_cost_is_that_of_the_inner_runs() {
+    let scene = shipped("area", [64, 48]);
+    let shot = Shot::new(&scene, "panel");
+    let vertices = |samples: u32| {
+        shot.evaluate(&format!("soft:samples={samples},inner=(map:size=64)")).cost.vertices.expect("counted")
+    };
+    assert_eq!(vertices(5), 5 * vertices(1));
+}
+
+#[test]
+fn errors_are_booked_to_the_points_or_to_the_inner_technique() {
+    let scene = shipped("area", [160, 120]);
+    let most = |light: &str, spec: &str| {
+        let shot = Shot::new(&scene, light);
+        let evaluation = shot.evaluate(spec);
+        let (cause, share) = evaluation.ledger.causes.iter().max_by_key(|(_, share)| share.pixels).expect("errors");
+        assert!(share.pixels > 10, "{spec}: {:?}", evaluation.ledger.causes);
+        *cause
+    };
+    assert_eq!(most("panel", "soft:samples=1,inner=(volume)"), Cause::FilterWidth);
+    assert_eq!(most("bulb", "soft:samples=4,inner=(volume)"), Cause::TechniqueModel);
+    assert_eq!(most("panel", "soft:samples=36,inner=(map:size=256,bias=none)"), Cause::Acne);
+    assert_eq!(most("panel", "soft:samples=36,inner=(map:size=256,bias_depth_m=0.5)"), Cause::PeterPanning);
+    // A hard technique takes the light for its centre.
+    assert_eq!(most("panel", "volume"), Cause::TechniqueModel);
+}
+
+#[test]
+fn nested_specifications_are_spelled_in_parentheses() {
+    let spec = parsed("soft:inner=(map:filter=pcf-box3,size=512),samples=4");
+    assert_eq!(spec.short(), "soft:inner=(map:size=512,filter=pcf-box3),samples=4");
+    assert_eq!(parsed(&spec.to_string()), spec);
+    assert_eq!(spec.nested("inner"), parsed("map:size=512,filter=pcf-box3"));
+    let refused = gnomon::technique::Spec::parse("soft:inner=(mpa)").unwrap_err().to_string();
+    assert!(refused.contains("did you mean 'map'"), "{refused}");
+}
