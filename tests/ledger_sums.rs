@@ -73,7 +73,7 @@ const SUM_ROUNDING: f64 = 1e-6;
 
 #[test]
 fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
-    let mut evaluated = [0; SPECS.len()];
+    let mut evaluated = vec![0; SPECS.len()];
     for scene in shipped_scenes(SIZE) {
         for light in &scene.lights {
             let shot = Shot::new(&scene, &light.name);
