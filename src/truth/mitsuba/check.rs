@@ -229,14 +229,15 @@ impl RayCaster<'_> {
 fn entry(segment: &Segment, bounds: &Bounds) -> DVec3 {
     // A little larger than the box's own, so that a light on it stays where it is.
     const SLACK: f64 = 1.01;
-    let (from_light, travel) = (segment.to - bounds.centre(), segment.from - segment.to);
-    let (a, b) = (travel.length_squared(), from_light.dot(travel));
-    let c = from_light.length_squared() - (SLACK * bounds.radius()).powi(2);
-    let discriminant = b * b - a * c;
-    if c <= 0.0 || discriminant <= 0.0 || a == 0.0 {
+    let radius = SLACK * bounds.radius();
+    let (from_centre, travel) = (segment.to - bounds.centre(), segment.from - segment.to);
+    // By way of the point nearest to the centre: from a far light, differences of squares would leave nothing of the ball.
+    let nearest = from_centre + travel * (-from_centre.dot(travel) / travel.length_squared());
+    let half_chord = (radius * radius - nearest.length_squared()).sqrt();
+    if from_centre.length() <= radius || !half_chord.is_finite() {
         return segment.to;
     }
-    segment.to + travel * ((-b - discriminant.sqrt()) / a).clamp(0.0, 1.0)
+    bounds.centre() + nearest - travel.normalize() * half_chord
 }
 
 #[cfg(test)]

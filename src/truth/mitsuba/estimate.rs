@@ -36,7 +36,7 @@ pub struct Estimate {
     pub rejected: Vec<u32>,
 }
 
-/// Error of a share counted over `samples` fixed points: docs/truth.md#area-lights, times [`EDGES`].
+/// Error of a share counted over `samples` fixed points: docs/truth.md#area-lights, times `EDGES`.
 #[must_use]
 pub fn discrepancy(samples: usize) -> f64 {
     EDGES * 0.5 / (samples as f64).sqrt()
