@@ -6,6 +6,7 @@ mod volume_stage;
 use glam::{UVec2, Vec3};
 use gnomon::cause::Cause;
 use gnomon::evaluate::View;
+use gnomon::inspect::MeshReport;
 use gnomon::scene::LightKind;
 use gnomon::watch::Unwatched;
 use volume_stage::testing::Shape;
@@ -245,6 +246,34 @@ fn lights_in_awkward_places_leave_no_crack() {
         let scene = over_floor(std::slice::from_ref(&cube), lamp(place), eye, Vec3::ZERO);
         for typed in ["volume", "volume:count=mixed", "volume:count=zp-plus", "volume:shape=per-triangle"] {
             run_first(&gpu, &scene, typed).assert_exact(&format!("{what} {typed}"));
+        }
+    }
+}
+
+/// The cube, the last of its triangles cut in two at the middle of an edge whose other face stays whole.
+fn with_t_junction(mut cube: Shape) -> Shape {
+    let [a, b, c] = cube.triangles.pop().unwrap();
+    let middle = cube.positions.len() as u32;
+    cube.positions.push(0.5 * (cube.positions[b as usize] + cube.positions[c as usize]));
+    cube.triangles.extend([[a, b, middle], [a, middle, c]]);
+    cube
+}
+
+#[test]
+fn t_junctions_are_reported_and_counted_as_the_triangles_there_are() {
+    let gpu = gpu();
+    // Quarters of a metre: the middle of an edge lies on it exactly.
+    let cube = quads_of_cube(Vec3::new(0.0, 1.0, 0.0), 0.5);
+    for (shape, junctions) in [(cube.clone(), 0), (with_t_junction(cube), 1)] {
+        for light in [lamp(Vec3::new(0.7, 4.0, 1.3)), sun(Vec3::new(-0.4, 0.8, 0.5))] {
+            let scene = over_floor(std::slice::from_ref(&shape), light, Vec3::new(0.5, 3.0, 4.0), Vec3::Y * 0.5);
+            let reports = scene.meshes.iter().map(|mesh| MeshReport::new(&scene, mesh, scene.bounds().radius()));
+            assert_eq!(reports.map(|report| report.t_junctions_exact).sum::<usize>(), junctions);
+            for typed in EXACT {
+                let run = run_first(&gpu, &scene, typed);
+                run.assert_exact(typed);
+                assert!(run.wrong() <= 1, "{typed}: {}", run.wrong());
+            }
         }
     }
 }
