@@ -250,15 +250,6 @@ fn lights_in_awkward_places_leave_no_crack() {
     }
 }
 
-/// The cube, the last of its triangles cut in two at the middle of an edge whose other face stays whole.
-fn with_t_junction(mut cube: Shape) -> Shape {
-    let [a, b, c] = cube.triangles.pop().unwrap();
-    let middle = cube.positions.len() as u32;
-    cube.positions.push(0.5 * (cube.positions[b as usize] + cube.positions[c as usize]));
-    cube.triangles.extend([[a, b, middle], [a, middle, c]]);
-    cube
-}
-
 #[test]
 fn t_junctions_are_reported_and_counted_as_the_triangles_there_are() {
     let gpu = gpu();

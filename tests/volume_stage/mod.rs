@@ -81,6 +81,16 @@ pub(crate) fn ball(centre: Vec3, radius: f32) -> Shape {
     shape
 }
 
+/// A shape, the last of its triangles cut in two at the middle of an edge whose other face
+/// stays whole.
+pub(crate) fn with_t_junction(mut shape: Shape) -> Shape {
+    let [a, b, c] = shape.triangles.pop().unwrap();
+    let middle = shape.positions.len() as u32;
+    shape.positions.push(0.5 * (shape.positions[b as usize] + shape.positions[c as usize]));
+    shape.triangles.extend([[a, b, middle], [a, middle, c]]);
+    shape
+}
+
 /// A shape without its last triangles.
 pub(crate) fn without_last(mut shape: Shape, count: usize) -> Shape {
     shape.triangles.truncate(shape.triangles.len() - count);
