@@ -24,12 +24,12 @@ demo: setup oracle ## judge three scenes' shadows; report and pictures go to out
 	$(CARGO) build --release --locked
 	@echo '==> judging shadows (a budget exceeded, exit status 1, is a result)'
 	rm -rf $(DEMO)
-	$(GNOMON) check scenes/torus scenes/room scenes/kitchen --out $(DEMO) || [ $$? -eq 1 ]
+	$(GNOMON) check scenes/torus scenes/room scenes/kitchen --out $(DEMO) --format html || [ $$? -eq 1 ]
 	@echo '==> rendering the room'
 	$(GNOMON) render scenes/room -o $(DEMO)/room.png
 	@echo '==> pictures:'
 	@ls $(DEMO)/*.png
-	@echo '==> report: $(DEMO)/report.json'
+	@echo '==> report, for a browser: $(DEMO)/report.html; for programs: $(DEMO)/report.json'
 
 test: setup oracle ## format, lints, documentation and every test
 	setup/rust.sh
