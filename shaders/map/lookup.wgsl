@@ -99,7 +99,7 @@ fn bias_depth(view: View, point_in_world: vec3f, normal_in_world: vec3f, at: InM
     }
     let slope = slope_per_texel(around, normal_in_world, lookup.texels);
     let sufficient = dot(reach_texels + lookup.raster_slack_texels, slope)
-        + rounding(view, point_in_world, at, slope, lookup.texels)
+        + slack(view, point_in_world, normal_in_world, at, slope, reach_texels, lookup.texels)
         + 4.0 * (lookup.fixed_step + lookup.float_step * abs(at.depth));
     let width = texel_m(around, lookup.texels);
     return along_light + min(sufficient, lookup.cap_texels * max(width.x, width.y) / metres_per_depth(around));
@@ -117,7 +117,7 @@ fn is_lit(reference: f32, texel: vec2i) -> bool {
         }
     }
     if lookup.seam != SEAM_PER_TAP || lookup.border == BORDER_CLAMP_EDGE {
-        return compares_lit(own.view, reference, clamp(texel, vec2i(0), vec2i(lookup.texels) - 1));
+        return compares_lit(own.view, reference, nearest_texel(texel, lookup.texels));
     }
     return lookup.border != BORDER_SHADOW;
 }
@@ -149,7 +149,7 @@ fn border_visibility() -> f32 {
 }
 
 fn is_in_view(texel: vec2i) -> bool {
-    return all(texel >= vec2i(0)) && all(texel < vec2i(lookup.texels));
+    return all(texel == nearest_texel(texel, lookup.texels));
 }
 
 fn compares_lit(view: u32, reference: f32, texel: vec2i) -> bool {
