@@ -21,12 +21,13 @@ const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
 const HOMOGENEOUS: Wgsl = wgsl!("map/homogeneous.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
+const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
 const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// The files of a lookup with one value of each axis.
-fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 6] {
-    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, filter]
+fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 7] {
+    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, OFFSET, filter]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
