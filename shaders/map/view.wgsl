@@ -59,12 +59,17 @@ fn metres_per_depth(at: Gradients) -> f32 {
     return length(ray) / abs(dot(at.depth, ray));
 }
 
-// Change of depth from one texel to the next along u and along v on a plane, without sign.
-fn slope_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+// Change of depth from one texel to the next along u and along v on a plane.
+fn depth_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
     let volume = dot(normal_in_world, cross(at.u, at.v)) * texels;
-    let change =
-        abs(vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u))));
+    let change = vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u)));
     // A plane that the light sees edge-on has no volume.
-    let edge_on = abs(volume) * STEEPEST <= change;
-    return select(change / abs(volume), vec2f(STEEPEST), edge_on);
+    let edge_on = abs(volume) * STEEPEST <= abs(change);
+    return select(change / volume, vec2f(STEEPEST), edge_on);
+}
+
+// How far along its normal a plane must move for its depth to change by what it changes from one texel to the next.
+fn normal_offset_per_texel_m(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+    let change = vec2f(dot(normal_in_world, cross(at.depth, at.v)), dot(normal_in_world, cross(at.u, at.depth)));
+    return abs(change) / (abs(dot(at.depth, cross(at.u, at.v))) * texels);
 }

@@ -29,7 +29,7 @@ const FAULTS: &[Fault] = &[
         PARABOLOID,
     ),
     ("map/gather.wgsl", "texels[index].xy", "texels[index].xy + 1u", "map"),
-    ("map/view.wgsl", "change / abs(volume)", "0.9 * change / abs(volume)", "map"),
+    ("map/view.wgsl", "change / volume", "0.9 * change / volume", "map"),
     ("map/homogeneous.wgsl", "vec2f(dot(view.u_row, point), dot(view.v_row, point))", "vec2f(q)", "map"),
     (
         "map/projection/one_view.wgsl",
@@ -40,6 +40,8 @@ const FAULTS: &[Fault] = &[
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
     ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
+    ("map/offset.wgsl", "offset.x + offset.y", "0.0", "map:size=300,bias=normal"),
+    ("map/lookup.wgsl", "vec2f(texel) + 0.5 - placed", "vec2f(texel) - 0.5 - placed", "map:bias=receiver-plane"),
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
     ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),

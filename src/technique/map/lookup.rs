@@ -1,7 +1,8 @@
 //! One shadow-map lookup: select the view, place the receiver in it, guard, bias, compare. This f64 twin is the
 //! specification of `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
 
-use super::bias::Amounts;
+use super::bias::{Amounts, Clearance};
+use super::offset::raster_slack_texels;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
@@ -9,15 +10,6 @@ use crate::scene::{Bounds, Light, Scene, Segment};
 use crate::technique::InView;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
-
-/// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
-/// to that much of its slope; interpolation adds up to four units of 2⁻²⁴ per texel from the map's corner.
-fn raster_slack_texels(texels: u32) -> f64 {
-    1.0 / 256.0 + 4.0 * f64::from(texels) * 2.0_f64.powi(-24)
-}
-
-/// Format steps that a closed-form bias adds for the rounding of both sides of the comparison.
-const FORMAT_STEPS: f64 = 4.0;
 
 /// Everything a lookup needs besides the receiver.
 #[derive(Clone)]
@@ -31,8 +23,8 @@ pub struct Lookup {
     border: Border,
     near_mode: NearMode,
     caster_sides: CasterSides,
-    format: DepthFormat,
-    light: DVec4,
+    pub(super) format: DepthFormat,
+    pub(super) light: DVec4,
 }
 
 impl std::fmt::Debug for Lookup {
@@ -65,6 +57,10 @@ pub struct Placed {
     pub depth: f64,
     /// Depth compared with the stored one: `depth` less the bias.
     pub reference: f64,
+    /// By how much that changes from one texel to the next along u and along v.
+    pub reference_per_texel: DVec2,
+    /// By how much it changes at most.
+    pub reference_reach: f64,
 }
 
 /// A texel that a lookup reads, and the receiver as its view sees it.
@@ -81,6 +77,17 @@ impl Placed {
     #[must_use]
     pub fn own_texel(&self) -> IVec2 {
         self.position_in_texels.floor().as_ivec2()
+    }
+
+    /// The same with the reference of one texel of its view.
+    #[must_use]
+    pub fn at_texel(&self, texel: IVec2) -> Self {
+        if self.reference_per_texel == DVec2::ZERO {
+            return *self;
+        }
+        let away = texel.as_dvec2() + 0.5 - self.position_in_texels;
+        let change = self.reference_per_texel.dot(away).clamp(-self.reference_reach, self.reference_reach);
+        Self { reference: (self.reference + change).clamp(0.0, 1.0), ..*self }
     }
 }
 
@@ -195,7 +202,7 @@ impl Lookup {
             Err(outside) if self.border != Border::ClampEdge || self.views[view].project(moved).q <= 0.0 => {
                 Err(outside)
             }
-            Ok(_) | Err(_) => Ok(self.placed(view, moved, normal_in_world, DVec2::splat(self.bias.closed_form_kernel))),
+            Ok(_) | Err(_) => Ok(self.placed(view, moved, normal_in_world, DVec2::splat(self.own_reach_texels()))),
         }
     }
 
@@ -204,43 +211,16 @@ impl Lookup {
         let site = self.views[view].site(moved);
         let depth = if self.border == Border::ClampEdge { site.at.depth.clamp(0.0, 1.0) } else { site.at.depth };
         let reference = depth - site.view.depth_sign * self.bias_depth(&site, normal_in_world, reach_texels);
-        Placed { view, point_in_world: moved, position_in_texels: site.position_in_texels(), depth, reference }
-    }
-
-    fn moved_along_normal(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
-        if self.bias.normal_texels == 0.0 {
-            return point_in_world;
+        let follows_plane = self.bias.clearance == Clearance::ReceiverPlane;
+        Placed {
+            view,
+            point_in_world: moved,
+            position_in_texels: site.position_in_texels(),
+            depth,
+            reference,
+            reference_per_texel: if follows_plane { site.depth_per_texel(normal_in_world) } else { DVec2::ZERO },
+            reference_reach: self.cap_depth(&site),
         }
-        let texel_m = self.views[view].site(point_in_world).texel_m().max_element();
-        let towards_light = (self.light.truncate() - point_in_world * self.light.w).normalize_or_zero();
-        let sine = normal_in_world.cross(towards_light).length();
-        point_in_world + normal_in_world * (self.bias.normal_texels * texel_m * sine)
-    }
-
-    /// How far the comparison is moved towards the light, in units of depth.
-    fn bias_depth(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let along_light = self.bias.depth_m / site.metres_per_depth();
-        if self.bias.closed_form_kernel == 0.0 {
-            return along_light;
-        }
-        along_light + self.closed_form(site, normal_in_world, reach_texels)
-    }
-
-    /// The closed-form bias: what suffices, but no more than the cap (docs/map.md#bias), in units of depth.
-    #[must_use]
-    pub fn closed_form(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let cap = self.bias.cap_texels * site.texel_m().max_element() / site.metres_per_depth();
-        self.sufficient_bias(site, normal_in_world, reach_texels).min(cap)
-    }
-
-    /// The bias that the receiver's own slope needs for texels up to that far away, in units of depth.
-    #[must_use]
-    pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let slope_per_texel = site.slope_per_texel(normal_in_world);
-        let reach = reach_texels + raster_slack_texels(self.texels().max_element());
-        reach.dot(slope_per_texel)
-            + site.slack(normal_in_world, slope_per_texel, reach_texels)
-            + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
     /// The texel of a placed receiver's view, or beyond the view's side what stands for it; `None` outside the map.
@@ -248,13 +228,13 @@ impl Lookup {
     pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
         let own = &self.views[placed.view];
         if own.holds(texel) {
-            return Some(Tap { placed: *placed, texel });
+            return Some(Tap { placed: placed.at_texel(texel), texel });
         }
         let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
         let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
         across.or_else(|| {
             let nearest = own.layout.nearest_texel(texel, own.texels);
-            is_clamped.then_some(Tap { placed: *placed, texel: nearest })
+            is_clamped.then_some(Tap { placed: placed.at_texel(nearest), texel: nearest })
         })
     }
 
@@ -271,8 +251,11 @@ impl Lookup {
         if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.views[view].holds(texel) {
             return None;
         }
-        let reach_texels = (texel.as_dvec2() + 0.5 - site.position_in_texels()).abs();
-        Some(Tap { placed: self.placed(view, placed.point_in_world, normal_in_world, reach_texels), texel })
+        let is_on_plane = self.bias.clearance == Clearance::ReceiverPlane;
+        let away = (texel.as_dvec2() + 0.5 - site.position_in_texels()).abs();
+        let reach_texels = if is_on_plane { DVec2::ZERO } else { away };
+        let placed = self.placed(view, placed.point_in_world, normal_in_world, reach_texels);
+        Some(Tap { placed: placed.at_texel(texel), texel })
     }
 
     /// What the comparison gives outside the map.
@@ -304,28 +287,6 @@ impl Lookup {
         ((row / size.y) as usize, UVec2::new(index % size.x, row % size.y))
     }
 
-    /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
-    #[must_use]
-    pub fn hardware_bias(&self, view: usize, [a, b, c]: [DVec3; 3]) -> f64 {
-        if self.bias.constant_units == 0 && self.bias.slope == 0.0 {
-            return 0.0;
-        }
-        let view = &self.views[view];
-        let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
-        let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
-        let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
-        self.rasteriser_bias(view, largest, slope)
-    }
-
-    /// What the rasteriser adds to the depth of a triangle, given its largest depth and its slope per texel.
-    #[must_use]
-    pub(super) fn rasteriser_bias(&self, view: &View, largest: f64, slope: f64) -> f64 {
-        let constant = f64::from(self.bias.constant_units) * self.format.hardware_unit(largest);
-        let bias = constant + self.bias.slope * slope;
-        let clamped = if self.bias.clamp > 0.0 { bias.min(self.bias.clamp) } else { bias };
-        view.depth_sign * clamped
-    }
-
     /// All world points within `bounds` that a view's map position looks along, nearest to the light first.
     #[must_use]
     pub fn ray_through(&self, view: usize, position_in_texels: DVec2, bounds: &Bounds) -> Option<Segment> {
@@ -345,13 +306,16 @@ impl Lookup {
             kernel,
             seam: self.seam as u32,
             border: self.border as u32,
-            closed_form_kernel: self.bias.closed_form_kernel as f32,
+            clearance: self.bias.clearance as u32,
+            bias_kernel: self.bias.kernel as f32,
             raster_slack_texels: raster_slack_texels(self.texels().max_element()) as f32,
             cap_texels: self.bias.cap_texels as f32,
             normal_texels: self.bias.normal_texels as f32,
             depth_m: self.bias.depth_m as f32,
+            depth_texels: self.bias.depth_texels as f32,
             fixed_step,
             float_step,
+            padding: [0; 2],
         }
     }
 }
@@ -365,13 +329,16 @@ pub(super) struct LookupUniform {
     kernel: u32,
     seam: u32,
     border: u32,
-    closed_form_kernel: f32,
+    clearance: u32,
+    bias_kernel: f32,
     raster_slack_texels: f32,
     cap_texels: f32,
     normal_texels: f32,
     depth_m: f32,
+    depth_texels: f32,
     fixed_step: f32,
     float_step: f32,
+    padding: [u32; 2],
 }
 
 #[cfg(test)]
@@ -393,13 +360,16 @@ mod tests {
                 kernel,
                 seam,
                 border,
-                closed_form_kernel,
+                clearance,
+                bias_kernel,
                 raster_slack_texels,
                 cap_texels,
                 normal_texels,
                 depth_m,
+                depth_texels,
                 fixed_step,
                 float_step,
+                padding,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {

@@ -13,6 +13,7 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod offset;
 mod outline;
 mod own_surface;
 mod passes;
@@ -168,6 +169,13 @@ pub(in crate::technique) fn bias_params() -> Vec<Param> {
         param("bias_clamp", "depth", real(0.0, 1.0), Value::Real(0.0), "largest hardware bias; 0: no limit"),
         param("bias_depth_m", "m", real(0.0, MAX_M), Value::Real(0.0), "bias along the light at the receiver"),
         param(
+            "bias_depth_texels",
+            "texels",
+            real(0.0, 1e4),
+            Value::Real(0.0),
+            "the same in widths of a texel at the receiver",
+        ),
+        param(
             "bias_normal_texels",
             "texels",
             real(0.0, 64.0),
@@ -179,7 +187,7 @@ pub(in crate::technique) fn bias_params() -> Vec<Param> {
             "texels",
             real(1.0, 1e4),
             Value::Real(64.0),
-            "largest closed-form bias at grazing light",
+            "largest bias derived from the receiver's plane, at grazing light",
         ),
     ]
 }

@@ -6,7 +6,7 @@ use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
-use crate::technique::receiver_buffer::{Chunk, ReceiverBuffer, workgroups};
+use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
 use projection::{Drawn, GpuView, View};
@@ -21,12 +21,13 @@ const CASTER_DEPTH: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/cast
 const CASTER_PARABOLOID: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_paraboloid.wgsl")];
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
+const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
 const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// The files of a lookup with one value of each axis.
-fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 6] {
-    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, filter]
+fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 7] {
+    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, OFFSET, filter]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -77,6 +78,7 @@ pub(super) struct MapPasses {
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
     buffer_bytes: u64,
+    texel_reads: u32,
 }
 
 /// How one view is drawn.
@@ -132,6 +134,7 @@ impl MapPasses {
                     + layers.iter().filter_map(|layer| layer.pieces.as_ref()).map(Buffer::size).sum::<u64>(),
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers,
+                texel_reads: texel_reads(settings, silhouettes.is_some()),
                 map,
                 lookup_pipeline,
                 points,
@@ -170,13 +173,9 @@ impl MapPasses {
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
             }
-            recorder.compute("lookup", |pass| {
-                pass.set_pipeline(&self.lookup_pipeline);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
+            receivers
+                .look_up(&mut recorder, &LookUp { name: "lookup", pipeline, bindings, texel_reads: self.texel_reads });
             recorder
         })?;
         recorder.finish("the shadow map")
@@ -225,6 +224,11 @@ impl MapPasses {
         let texels = u64::from(self.map.width()) * u64::from(self.map.height()) * self.layers.len() as u64;
         texels * settings.format.bytes() + self.buffer_bytes
     }
+}
+
+/// Texels that a lookup reads at most. With silhouettes that is one depth and the points of five cells.
+fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
+    if has_silhouettes { 1 + 5 } else { settings.filter.texel_reads(settings.kernel) }
 }
 
 fn all_layers(map: &Texture) -> TextureView {

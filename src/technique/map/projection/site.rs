@@ -56,13 +56,28 @@ impl Site<'_> {
         [v.cross(normal_in_world) / volume.x, normal_in_world.cross(u) / volume.y]
     }
 
-    /// Change of depth from one texel to the next along u and along v on a plane through the point, without sign.
+    /// Change of depth from one texel to the next along u and along v on a plane through the point.
+    #[must_use]
+    pub fn depth_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
+        // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
+        let bounded = |change: f64| if change.abs() < STEEPEST { change } else { STEEPEST };
+        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
+        DVec2::new(bounded(self.gradients.depth.dot(along_u)), bounded(self.gradients.depth.dot(along_v)))
+    }
+
+    /// The same without sign.
     #[must_use]
     pub fn slope_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
-        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
-        let slope = DVec2::new(self.gradients.depth.dot(along_u), self.gradients.depth.dot(along_v)).abs();
-        // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
-        DVec2::new(STEEPEST.min(slope.x), STEEPEST.min(slope.y))
+        self.depth_per_texel(normal_in_world).abs()
+    }
+
+    /// How far along its normal a plane through the point must move for its depth to change by what it changes from one
+    /// texel to the next along u and along v. Bounded, even where the light sees the plane edge-on.
+    #[must_use]
+    pub fn normal_offset_per_texel_m(&self, normal_in_world: DVec3) -> DVec2 {
+        let Gradients { u, v, depth } = self.gradients;
+        let change = DVec2::new(normal_in_world.dot(depth.cross(v)), normal_in_world.dot(u.cross(depth))).abs();
+        change / (depth.dot(self.ray()).abs() * self.view.texels.as_dvec2())
     }
 
     /// By how much texels up to `reach_texels` away may differ from its plane's slope.
