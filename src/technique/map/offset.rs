@@ -71,8 +71,9 @@ impl Lookup {
     pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
         let slope_per_texel = site.slope_per_texel(normal_in_world);
         let reach = reach_texels + raster_slack_texels(self.texels().max_element());
-        let slack = site.slack(normal_in_world, slope_per_texel, reach_texels);
-        reach.dot(slope_per_texel) + slack + FORMAT_STEPS * self.format.step(site.at.depth)
+        reach.dot(slope_per_texel)
+            + site.slack(normal_in_world, slope_per_texel, reach_texels)
+            + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
     /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
@@ -89,6 +90,7 @@ impl Lookup {
     }
 
     /// What the rasteriser adds to the depth of a triangle, given its largest depth and its slope per texel.
+    #[must_use]
     pub(super) fn rasteriser_bias(&self, view: &View, largest: f64, slope: f64) -> f64 {
         let constant = f64::from(self.bias.constant_units) * self.format.hardware_unit(largest);
         let bias = constant + self.bias.slope * slope;
