@@ -71,6 +71,8 @@ const SPECS: &[&str] = &[
     "map:projection=dual-paraboloid,size=101,max_edge_deg=0,bias=slope,caster_sides=away-facing",
     "map:projection=dual-paraboloid,size=60,max_edge_deg=9,bias=none,seam=clamp,filter=pcf-poisson,orientation=down",
     "map:projection=dual-paraboloid,size=3,near_m=1,near_mode=fragment-clamp,depth_convention=forward,filter=pcf-box5",
+    "map:projection=adaptive,tile_texels=16,max_tiles=70,filter=pcf-box4",
+    "map:projection=adaptive,tile_texels=33,max_tiles=20,edges_only=off,m_target=0.5,bias=slope,seam=clamp,filter=pcf-box3",
     "volume:extrude=degenerate-quads",
     "volume:range_mask=on",
     "volume:count=z-pass,range_mask=on,scissor=on",

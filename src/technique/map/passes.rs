@@ -151,25 +151,7 @@ impl MapPasses {
     ) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow map", || {
             let mut recorder = Recorder::new(gpu);
-            for layer in &self.layers {
-                let depth = RenderPassDepthStencilAttachment {
-                    view: &layer.target,
-                    depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
-                    stencil_ops: None,
-                };
-                let no_color = if layer.writes_depth { &[None][..] } else { &[] };
-                recorder.render("map", no_color, Some(depth), |pass| {
-                    pass.set_pipeline(&layer.pipeline);
-                    pass.set_bind_group(0, &layer.bindings, &[]);
-                    match &layer.pieces {
-                        Some(corners) => {
-                            pass.set_vertex_buffer(0, corners.slice(..));
-                            pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
-                        }
-                        None => geometry.draw_casters(pass),
-                    }
-                });
-            }
+            self.record_layers(&mut recorder, geometry);
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
             }
@@ -179,6 +161,38 @@ impl MapPasses {
             recorder
         })?;
         recorder.finish("the shadow map")
+    }
+
+    /// Draws the map alone.
+    pub(super) fn draw(&self, gpu: &Gpu, geometry: &Geometry) -> Result<(), GpuError> {
+        let recorder = gpu.scoped("recording a map to be read back", || {
+            let mut recorder = Recorder::new(gpu);
+            self.record_layers(&mut recorder, geometry);
+            recorder
+        })?;
+        recorder.finish("a map to be read back").map(drop)
+    }
+
+    fn record_layers(&self, recorder: &mut Recorder<'_>, geometry: &Geometry) {
+        for layer in &self.layers {
+            let depth = RenderPassDepthStencilAttachment {
+                view: &layer.target,
+                depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
+                stencil_ops: None,
+            };
+            let no_color = if layer.writes_depth { &[None][..] } else { &[] };
+            recorder.render("map", no_color, Some(depth), |pass| {
+                pass.set_pipeline(&layer.pipeline);
+                pass.set_bind_group(0, &layer.bindings, &[]);
+                match &layer.pieces {
+                    Some(corners) => {
+                        pass.set_vertex_buffer(0, corners.slice(..));
+                        pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
+                    }
+                    None => geometry.draw_casters(pass),
+                }
+            });
+        }
     }
 
     /// The outline's points that the last run drew; `None` for a map without silhouettes.

@@ -2,6 +2,8 @@
 
 use super::lookup::Lookup;
 use super::passes::MapPasses;
+use super::projection::Refined;
+use super::scout::DeviceScout;
 use super::{Placed, Settings, texel_footprint};
 use crate::cause::Replay;
 use crate::mask::Mask;
@@ -10,10 +12,15 @@ use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
+/// More views than these are not listed one by one.
+const LISTED_VIEWS: usize = 8;
+
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
     pub(super) settings: Settings,
     pub(super) lookup: Lookup,
+    /// What the fit has to say, for people.
+    fit_facts: Vec<(String, String)>,
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
     pub(super) scene_radius_m: f64,
@@ -30,13 +37,16 @@ impl<'j> PreparedMap<'j> {
     ) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
-        let lookup = Lookup::new(views, settings, job.light);
+        let fitted = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
+        let scout = DeviceScout { job: &job, settings, receivers: &receivers };
+        let refined = settings.projection.refine(job.scene, job.light, settings, &scout)?;
+        let Refined { views, facts: fit_facts } = refined.unwrap_or(Refined { views: fitted, facts: Vec::new() });
+        let lookup = Lookup::new(views, settings, job.light);
         let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
-        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m, silhouettes })
+        Ok(Self { job, settings: *settings, lookup, fit_facts, passes, receivers, scene_radius_m, silhouettes })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -97,8 +107,12 @@ impl Prepared for PreparedMap<'_> {
                 ("light window".to_owned(), view.window.clone()),
                 ("light near, far".to_owned(), view.near_far.clone()),
             ],
-            views => views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect(),
+            views if views.len() <= LISTED_VIEWS => {
+                views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect()
+            }
+            views => vec![("light near, far".to_owned(), views[0].near_far.clone())],
         };
+        facts.extend(self.fit_facts.iter().cloned());
         facts.extend([
             ("effective bias".to_owned(), spread(&biases, |bias| bias.effective_m)),
             ("acne-free bias".to_owned(), spread(&biases, |bias| bias.acne_free_m)),
