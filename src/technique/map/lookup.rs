@@ -2,6 +2,7 @@
 //! specification of `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
 
 use super::bias::Amounts;
+use super::filter::Kernel;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
@@ -32,6 +33,8 @@ pub struct Lookup {
     caster_sides: CasterSides,
     format: DepthFormat,
     light: DVec4,
+    /// Whether each tap is biased for as far as it is, not for the widest kernel.
+    reaches_by_tap: bool,
 }
 
 impl std::fmt::Debug for Lookup {
@@ -97,6 +100,7 @@ impl Lookup {
             caster_sides: settings.caster_sides,
             format: settings.format,
             light: light.homogeneous(),
+            reaches_by_tap: settings.filter.reaches_by_tap(),
         }
     }
 
@@ -228,7 +232,12 @@ impl Lookup {
     #[must_use]
     pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
         if self.is_inside(texel) {
-            return Some(Tap { placed: *placed, texel });
+            let reach_texels = (texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(DVec2::splat(0.5));
+            let placed = match self.reaches_by_tap && self.bias.closed_form_kernel != 0.0 {
+                true => self.placed(placed.view, placed.point_in_world, normal_in_world, reach_texels),
+                false => *placed,
+            };
+            return Some(Tap { placed, texel });
         }
         let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
         let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
@@ -311,7 +320,7 @@ impl Lookup {
 
     /// The uniform of the shader.
     #[must_use]
-    pub(super) fn uniform(&self, kernel: u32) -> LookupUniform {
+    pub(super) fn uniform(&self, kernel: &Kernel) -> LookupUniform {
         let (fixed_step, float_step) = match self.format {
             DepthFormat::Depth32Float => (0.0, f32::EPSILON),
             fixed => (fixed.step(1.0) as f32, 0.0),
@@ -319,7 +328,7 @@ impl Lookup {
         LookupUniform {
             light: self.light.as_vec4().to_array(),
             texels: self.texels().as_vec2().to_array(),
-            kernel,
+            kernel: kernel.number,
             seam: self.seam as u32,
             border: self.border as u32,
             closed_form_kernel: self.bias.closed_form_kernel as f32,
@@ -329,6 +338,10 @@ impl Lookup {
             depth_m: self.bias.depth_m as f32,
             fixed_step,
             float_step,
+            reaches_by_tap: self.reaches_by_tap.into(),
+            turns: kernel.turns.into(),
+            seed: kernel.seed,
+            padding: 0,
         }
     }
 }
@@ -349,6 +362,10 @@ pub(super) struct LookupUniform {
     depth_m: f32,
     fixed_step: f32,
     float_step: f32,
+    reaches_by_tap: u32,
+    turns: u32,
+    seed: u32,
+    padding: u32,
 }
 
 #[cfg(test)]
@@ -377,6 +394,10 @@ mod tests {
                 depth_m,
                 fixed_step,
                 float_step,
+                reaches_by_tap,
+                turns,
+                seed,
+                padding,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {
