@@ -1,6 +1,7 @@
 //! Where one pixel's lookup went, for people.
 
 use super::prepared::PreparedMap;
+use super::reading::{Depths, Looked};
 use super::replay::Replayer;
 use crate::technique::TechniqueError;
 
@@ -38,13 +39,15 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
 
     let replayer = Replayer::new(map, &[pixel])?;
     let mut taps = Vec::new();
-    replayer.each_tap(&receiver, &placed, &mut |tap, _| taps.push(tap));
+    let looked = Looked { lookup: &map.lookup, pixel, receiver, placed };
+    let reading = &replayer.reading;
+    reading.each_tap(Depths::Exact, &looked, &mut |tap, _| taps.push(tap));
     for tap in taps.iter().take(LISTED_TAPS) {
         let Some(tap) = tap else {
             facts.push(fact("texel", "outside the map".to_owned()));
             continue;
         };
-        let (Some(stored), Some(exact)) = (replayer.stored(tap), replayer.exact(tap)) else { continue };
+        let (Some(stored), Some(exact)) = (reading.depth(Depths::Stored, tap), reading.exact(tap)) else { continue };
         let lit = if map.lookup.is_lit(tap.placed.view, tap.placed.reference, stored) { "lit" } else { "shadow" };
         let holds = exact.triangle.map_or_else(
             || "nothing".to_owned(),

@@ -10,7 +10,7 @@ use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DMat4, DVec2, DVec3, UVec2};
+use glam::{DMat4, DVec2, DVec3, UVec2, Vec4};
 
 /// More views than these are not listed one by one.
 const LISTED_VIEWS: usize = 8;
@@ -23,6 +23,8 @@ pub(super) struct PreparedMap<'j> {
     fit_facts: Vec<(String, String)>,
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
+    /// What the filter's shader and its twin are told.
+    pub(super) numbers: Vec<Vec4>,
     pub(super) scene_radius_m: f64,
     /// The edges of the casters' silhouettes, for a map that draws them.
     pub(super) silhouettes: Option<Vec<[DVec3; 2]>>,
@@ -39,14 +41,16 @@ impl<'j> PreparedMap<'j> {
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
         let fitted = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let scout = DeviceScout { job: &job, settings, receivers: &receivers };
+        let numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let scout = DeviceScout { job: &job, settings, numbers: &numbers, receivers: &receivers };
         let refined = settings.projection.refine(job.scene, job.light, settings, &scout)?;
         let Refined { views, facts: fit_facts } = refined.unwrap_or(Refined { views: fitted, facts: Vec::new() });
         let lookup = Lookup::new(views, settings, job.light);
-        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers, silhouettes)?;
+        let passes = MapPasses::new(job.gpu, settings, &lookup, &numbers, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
-        Ok(Self { job, settings: *settings, lookup, fit_facts, passes, receivers, scene_radius_m, silhouettes })
+        let settings = *settings;
+        Ok(Self { job, settings, lookup, fit_facts, passes, receivers, numbers, scene_radius_m, silhouettes })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -68,7 +72,7 @@ impl<'j> PreparedMap<'j> {
         let corners = self.job.scene.triangle_in_world(receiver.triangle);
         let by_rasteriser = lookup.hardware_bias(placed.view, corners).abs();
         let effective_m = ((placed.depth - placed.reference).abs() + by_rasteriser) * metres_per_depth;
-        let kernel = self.settings.filter.bias_kernel(self.settings.kernel);
+        let kernel = self.settings.filter.bias_kernel(&self.settings.kernel);
         let acne_free = lookup.closed_form(&site, receiver.normal_in_world, DVec2::splat(kernel));
         let light = self.job.light.homogeneous();
         let to_light = (light.truncate() - receiver.point_in_world * light.w).normalize_or_zero();

@@ -7,11 +7,13 @@ use super::projection::{Scout, View};
 use super::texel_footprint;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::{Job, ReceiverBuffer, TechniqueError};
+use glam::Vec4;
 
 /// Scouts for one job.
 pub(super) struct DeviceScout<'s, 'j> {
     pub(super) job: &'s Job<'j>,
     pub(super) settings: &'s Settings,
+    pub(super) numbers: &'s [Vec4],
     pub(super) receivers: &'s ReceiverBuffer,
 }
 
@@ -30,7 +32,7 @@ impl Scout for DeviceScout<'_, '_> {
         let Some(first) = views.first() else { return Ok(Vec::new()) };
         let texels = first.texels.element_product();
         let lookup = Lookup::new(views.to_vec(), self.settings, self.job.light);
-        let passes = MapPasses::new(self.job.gpu, self.settings, &lookup, self.receivers, None)?;
+        let passes = MapPasses::new(self.job.gpu, self.settings, &lookup, self.numbers, self.receivers, None)?;
         passes.draw(self.job.gpu, self.job.geometry)?;
         let indices: Vec<u32> = (0..texels * views.len() as u32).collect();
         let depths = passes.gather(self.job.gpu, &lookup, &indices)?;

@@ -10,7 +10,7 @@ use super::quadtree::{DEEPEST, Rules, Sample, Tile, Tree, place_on_curve, refine
 use super::{LightFrustum, Projection, Refined, Scout, Shape, Shares, View, Window, single};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::{Light, Scene};
-use crate::technique::map::settings::Settings;
+use crate::technique::map::settings::{DepthMetric, Settings};
 use crate::technique::{TechniqueError, Unsupported};
 use glam::{DVec2, DVec3, UVec2, Vec4};
 
@@ -32,6 +32,10 @@ impl Projection for Adaptive {
 
     fn shader(&self) -> Wgsl {
         wgsl!("map/projection/adaptive.wgsl")
+    }
+
+    fn has_linear_depth(&self) -> bool {
+        true
     }
 
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
@@ -76,8 +80,12 @@ impl Projection for Adaptive {
             let at_a_time = (TEXELS_AT_A_TIME / (side * side)).max(1) as usize;
             let mut jumps = Vec::with_capacity(tiles.len());
             for tiles in tiles.chunks(at_a_time) {
-                let frusta: Vec<LightFrustum> =
-                    tiles.iter().map(|tile| frustum_of(&whole, *tile, knobs.tile_texels, RIM_TEXELS)).collect();
+                // Projected depth, over a plane, changes by equal steps.
+                let scout_of = |tile: &Tile| LightFrustum {
+                    depth_metric: DepthMetric::Projected,
+                    ..frustum_of(&whole, *tile, knobs.tile_texels, RIM_TEXELS)
+                };
+                let frusta: Vec<LightFrustum> = tiles.iter().map(scout_of).collect();
                 let views: Vec<View> = frusta.iter().map(|frustum| frustum.view("scout")).collect();
                 let depths = scout.depths(&views)?;
                 jumps.extend(frusta.iter().zip(&depths).map(|(frustum, depths)| jumps_in(frustum, depths)));
@@ -199,6 +207,7 @@ mod tests {
             far_m: 30.0,
             shape,
             reversed: true,
+            depth_metric: DepthMetric::Projected,
             texels: UVec2::splat(512),
         }
     }

@@ -35,6 +35,10 @@ impl Projection for Cascaded {
         wgsl!("map/projection/cascaded.wgsl")
     }
 
+    fn has_linear_depth(&self) -> bool {
+        true
+    }
+
     fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
         direction(light).map(|_| ())
     }
@@ -180,8 +184,8 @@ fn around_sphere(
     let window = Window { min: around.min + moved, max: around.max + moved };
     let reach = Reach::within(scene, &light_view_from_world, Shape::Parallel, window).unwrap_or_default();
     let (near_m, far_m) = settings.fit.planes_m(reach.planes(light, Shape::Parallel, settings))?;
-    let (shape, reversed) = (Shape::Parallel, settings.reversed);
-    Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, texels })
+    let (shape, reversed, depth_metric) = (Shape::Parallel, settings.reversed, settings.depth_metric);
+    Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, depth_metric, texels })
 }
 
 #[cfg(test)]

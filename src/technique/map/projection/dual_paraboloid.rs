@@ -14,7 +14,7 @@ use super::{LightFrustum, Projection, Shape, Shares, View, Window, cube};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::{Light, LightKind, Mesh, Scene};
 use crate::technique::Unsupported;
-use crate::technique::map::settings::Settings;
+use crate::technique::map::settings::{DepthMetric, Settings};
 use glam::{DMat3, DMat4, DVec3, UVec2, Vec4};
 use std::sync::Arc;
 
@@ -71,6 +71,7 @@ impl Projection for DualParaboloid {
                 far_m,
                 shape: Shape::Perspective,
                 reversed: settings.reversed,
+                depth_metric: DepthMetric::Projected,
                 texels,
             };
             // Its matrix shows 90 degrees of the hemisphere to people; what is drawn goes by the rows.

@@ -68,6 +68,14 @@ pub trait Projection: Sync {
     fn layout(&self) -> Wgsl {
         wgsl!("map/homogeneous.wgsl")
     }
+    /// Whether its views can store distance along an axis from the light's position in place of projected depth.
+    fn has_linear_depth(&self) -> bool {
+        false
+    }
+    /// Whether its views are plain frusta with their apex at the light's position: q is the distance along the axis.
+    fn is_frustum(&self) -> bool {
+        false
+    }
     /// Whether it can hold this light's receivers.
     ///
     /// # Errors

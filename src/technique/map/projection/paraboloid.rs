@@ -133,6 +133,7 @@ impl Layout for Paraboloid {
 pub(super) mod tests {
     use super::*;
     use crate::technique::map::projection::{LightFrustum, Shape, Window};
+    use crate::technique::map::settings::DepthMetric;
     use glam::DMat4;
 
     /// A view along +z from the origin with near 0 and far 10.
@@ -144,6 +145,7 @@ pub(super) mod tests {
             far_m: 10.0,
             shape: Shape::Perspective,
             reversed: true,
+            depth_metric: DepthMetric::Projected,
             texels: UVec2::splat(size),
         };
         let constant = |value: f32| Vec4::new(0.0, 0.0, 0.0, value);
