@@ -120,6 +120,7 @@ impl Session<'_> {
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(&fractions);
         run.motion = Motion::of(&moved.of_camera, &moved.of_light);
+        run.bias = Some(evaluation.prepared.bias()).filter(|views| !views.is_empty());
         run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
         self.pixels.add(question, Some((&evaluation, &subject.explain_some_pixel())))?;
         if let Some(out) = &self.out {

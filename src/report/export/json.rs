@@ -36,7 +36,7 @@ mod tests {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    const RUN_KEYS: [&str; 17] = [
+    const RUN_KEYS: [&str; 18] = [
         "scene",
         "light",
         "typed",
@@ -54,6 +54,7 @@ mod tests {
         "budget",
         "jitter",
         "motion",
+        "bias",
     ];
 
     #[test]
@@ -61,8 +62,8 @@ mod tests {
         let text = String::from_utf8(to_json(&report()).unwrap()).unwrap();
         assert_eq!(written_keys(&text, 2), ["schema", "tool", "adapter", "runs"]);
         let run_keys = written_keys(&text, 6);
-        assert_eq!(run_keys.len(), 3 * 17, "every run has every key");
-        assert!(run_keys.chunks(17).all(|keys| keys == RUN_KEYS));
+        assert_eq!(run_keys.len(), 3 * RUN_KEYS.len(), "every run has every key");
+        assert!(run_keys.chunks(RUN_KEYS.len()).all(|keys| keys == RUN_KEYS));
 
         let run = &parsed(&report())["runs"][0];
         let mut pixel_keys = keys(&run["pixels"]);
@@ -101,6 +102,10 @@ mod tests {
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
         assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
         assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
+        let of_view =
+            ["acne_free", "along_light", "along_light_depth", "along_normal", "contact_gap", "receivers", "view"];
+        assert_eq!(keys(&run["bias"][0]), of_view);
+        assert_eq!(run["bias"][0]["along_light"]["texels"], json!({"min": 1.0, "median": 1.0, "max": 1.0}));
     }
 
     #[test]
@@ -110,6 +115,9 @@ mod tests {
         assert_eq!(json["runs"][2]["status"], "failed");
         for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion"] {
             assert!(json["runs"][0][key].is_object(), "{key}");
+        }
+        assert!(json["runs"][0]["bias"].is_array());
+        for key in RUN_KEYS.into_iter().skip_while(|key| *key != "pixels") {
             assert!(json["runs"][1][key].is_null() && json["runs"][2][key].is_null(), "{key}");
         }
         assert!(json["runs"][0]["why"].is_null());

@@ -2,7 +2,7 @@
 
 use super::figures::{BudgetOutcome, CauseEntry, Jitter, Motion, TruthSource};
 use crate::cause::Cause;
-use crate::technique::Cost;
+use crate::technique::{Cost, EffectiveBias};
 use crate::verdict::{ErrorStats, Ledger, PixelCounts, Verdict};
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
@@ -76,10 +76,12 @@ pub struct Run {
     pub jitter: Option<Jitter>,
     /// What flips from frame to frame as camera and light move; null for a run that did not move.
     pub motion: Option<Motion>,
+    /// How far comparisons were really moved, view by view; null for a technique that compares no depths.
+    pub bias: Option<Vec<EffectiveBias>>,
 }
 
 impl Run {
-    /// A run with a verdict. Causes, cost, truth, budget, jitter and motion are null until somebody sets them.
+    /// A run with a verdict. Causes, cost, truth, budget, jitter, motion and bias are null until somebody sets them.
     #[must_use]
     pub fn judged(question: Question, verdict: &Verdict) -> Self {
         Self {
@@ -128,6 +130,7 @@ impl Run {
             budget: None,
             jitter: None,
             motion: None,
+            bias: None,
         }
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::cause::Cause;
 use crate::mask::{Mask, Truth, TruthMask, Visibility};
 use crate::receiver::PixelClass;
-use crate::technique::{Cost, GpuTime, PassTime};
+use crate::technique::{BiasAt, Cost, EffectiveBias, GpuTime, PassTime};
 use crate::verdict::{CauseShare, Ledger, Verdict, WRONG_ABOVE_HARD, judge};
 use glam::UVec2;
 
@@ -33,6 +33,15 @@ pub(crate) fn question(scene: &str, typed: &str) -> Question {
     }
 }
 
+const BIAS: BiasAt = BiasAt {
+    along_light_depth: 0.001,
+    along_light_m: 0.04,
+    along_normal_m: 0.0,
+    acne_free_m: 0.02,
+    contact_gap_m: 0.03,
+    texel_m: 0.04,
+};
+
 /// A judged run with every figure filled in.
 pub(crate) fn full_run(scene: &str) -> Run {
     let verdict = verdict_with(3, 4, 1);
@@ -59,6 +68,7 @@ pub(crate) fn full_run(scene: &str) -> Run {
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
     run.motion = Motion::of(&[1, 3], &[0, 2]);
+    run.bias = EffectiveBias::of("map", &[BIAS]).map(|bias| vec![bias]);
     run
 }
 
