@@ -1,6 +1,6 @@
-// Draws casters with a depth of its own: where u and v are warped but depth is not, and where casters before the near
-// plane must be drawn at it though the device always clips. The rasteriser's bias does not reach such depths, so it is
-// added here.
+// Draws casters with a depth of its own: where u and v are warped but depth is not, where casters before the near plane
+// must be drawn at it though the device always clips, and where a shader looks at depths. The rasteriser's bias does not
+// reach such depths, so it is added here. Another file says which fragments are kept.
 
 struct Caster {
     clip_from_world: mat4x4f,
@@ -34,8 +34,8 @@ fn vertex(@location(0) position_in_world: vec3f) -> Corner {
     return Corner(position, vec2f(dot(caster.depth_row, point), dot(caster.depth_q_row, point)));
 }
 
-@fragment
-fn fragment(corner: Corner) -> @builtin(frag_depth) f32 {
+// The depth that is stored.
+fn drawn_depth(corner: Corner) -> f32 {
     let depth = corner.depth.x / corner.depth.y;
     let slope = max(abs(dpdx(depth)), abs(dpdy(depth)));
     if caster.clamps == 0u && (depth < 0.0 || depth > 1.0) {

@@ -2,6 +2,7 @@
 //! metres and in texels, over the receivers of each view of a map (docs/map.md#bias).
 
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// The bias at one receiver, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,8 @@ pub struct EffectiveBias {
     pub acne_free: Lengths,
     /// How far a thin blocker's shadow starts from where it stands.
     pub contact_gap: Lengths,
+    /// How stored depths are moved besides, in words, where that depends on every texel; null where they are not.
+    pub stored: Option<Cow<'static, str>>,
 }
 
 /// A length over some receivers, in two units.
@@ -75,7 +78,14 @@ impl EffectiveBias {
             along_normal: lengths(|bias| bias.along_normal_m)?,
             acne_free: lengths(|bias| bias.acne_free_m)?,
             contact_gap: lengths(|bias| bias.contact_gap_m)?,
+            stored: None,
         })
+    }
+
+    /// The same where stored depths are moved besides.
+    #[must_use]
+    pub fn with_stored(self, how: &'static str) -> Self {
+        Self { stored: Some(Cow::Borrowed(how)), ..self }
     }
 
     /// Label and value of each figure, for people.
@@ -86,17 +96,21 @@ impl EffectiveBias {
             figures.push(("normal offset", self.along_normal));
         }
         figures.extend([("acne-free bias", self.acne_free), ("contact gap", self.contact_gap)]);
-        figures.into_iter().map(|(label, lengths)| (label.to_owned(), lengths.told())).collect()
+        let stored = self.stored.iter().map(|how| ("stored depths".to_owned(), format!("moved {how}")));
+        figures.into_iter().map(|(label, lengths)| (label.to_owned(), lengths.told())).chain(stored).collect()
     }
 
     /// What is applied, in one line.
     #[must_use]
     pub fn told(&self) -> String {
-        let along_light = self.along_light.told();
+        let mut told = format!("{} along the light", self.along_light.told());
         if self.along_normal.m.max > 0.0 {
-            return format!("{along_light} along the light, {} along the normal", self.along_normal.told());
+            told += &format!(", {} along the normal", self.along_normal.told());
         }
-        format!("{along_light} along the light")
+        if let Some(how) = &self.stored {
+            told += &format!("; stored depths moved {how}");
+        }
+        told
     }
 }
 
@@ -161,6 +175,8 @@ mod tests {
     fn it_is_told_in_one_line() {
         let told = |biases: &[BiasAt]| EffectiveBias::of("map", biases).unwrap().told();
         assert_eq!(told(&[bias(0.0, 0.0)]), "none along the light");
+        let moved = EffectiveBias::of("map", &[bias(0.0, 0.0)]).unwrap().with_stored("halfway");
+        assert_eq!(moved.told(), "none along the light; stored depths moved halfway");
         assert_eq!(told(&[bias(0.04, 0.0)]), "4.00e-2 m = 1.00 texels along the light");
         assert_eq!(
             told(&[bias(0.04, 0.02), bias(0.02, 0.02)]),

@@ -102,8 +102,16 @@ mod tests {
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
         assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
         assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
-        let of_view =
-            ["acne_free", "along_light", "along_light_depth", "along_normal", "contact_gap", "receivers", "view"];
+        let of_view = [
+            "acne_free",
+            "along_light",
+            "along_light_depth",
+            "along_normal",
+            "contact_gap",
+            "receivers",
+            "stored",
+            "view",
+        ];
         assert_eq!(keys(&run["bias"][0]), of_view);
         assert_eq!(run["bias"][0]["along_light"]["texels"], json!({"min": 1.0, "median": 1.0, "max": 1.0}));
     }

@@ -13,6 +13,7 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod midpoint;
 mod offset;
 mod outline;
 mod own_surface;
@@ -65,6 +66,10 @@ impl Technique for Map {
         if settings.near_mode == NearMode::DepthClamp && !gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL) {
             let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
             return Err(Unsupported::MissingFeature { what });
+        }
+        if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {
+            let why = "bias=midpoint lies between two sides of casters: it needs caster_sides=all".to_owned();
+            return Err(Unsupported::Degenerate { why });
         }
         settings.projection.supports(scene, light, &settings)
     }

@@ -1,6 +1,7 @@
 //! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
 use super::lookup::Lookup;
+use super::midpoint::{MIDPOINT, MidpointPass};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
@@ -13,11 +14,15 @@ use projection::{GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
     DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
-    RenderPipeline, StoreOp, Texture, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
+    RenderPipeline, StoreOp, Texture, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    TextureViewDimension,
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
+/// What draws casters with a depth of the fragment's own.
 const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const NEAREST_LAYER: Wgsl = wgsl!("map/nearest_layer.wgsl");
+const SECOND_LAYER: Wgsl = wgsl!("map/second_layer.wgsl");
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
 const HOMOGENEOUS: Wgsl = wgsl!("map/homogeneous.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
@@ -35,7 +40,9 @@ fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl;
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![
         ("map caster".to_owned(), vec![CASTER]),
-        ("map caster depth".to_owned(), vec![CASTER_DEPTH]),
+        ("map caster depth".to_owned(), vec![CASTER_DEPTH, NEAREST_LAYER]),
+        ("map second layer".to_owned(), vec![CASTER_DEPTH, SECOND_LAYER]),
+        ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
@@ -70,6 +77,8 @@ struct CasterUniform {
 pub(super) struct MapPasses {
     map: Texture,
     layers: Vec<Layer>,
+    /// What makes the map of two others, for a map that stores the middle between two surfaces.
+    midpoint: Option<MidpointPass>,
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
@@ -77,7 +86,7 @@ pub(super) struct MapPasses {
 }
 
 /// How one view is drawn.
-struct Layer {
+pub(super) struct Layer {
     target: TextureView,
     pipeline: RenderPipeline,
     bindings: BindGroup,
@@ -105,6 +114,9 @@ impl MapPasses {
             let uniform = gpu.uniform("lookup", lookup.uniform(settings.kernel));
             let filter = if silhouettes.is_some() { WEDGES } else { settings.filter.shader() };
             let lookup_pipeline = gpu.compute_pipeline("map lookup", &lookup_files(settings.projection, filter));
+            let midpoint = settings.stores_midpoint().then(|| MidpointPass::new(gpu, settings, lookup, &map));
+            let nearest = midpoint.as_ref().map_or(&map, MidpointPass::nearest);
+            let layers = layers(gpu, settings, lookup, nearest, None);
             let all_layers = all_layers(&map);
             let points = silhouettes.map(|edges| PointPass::new(gpu, lookup.texels(), &views, &all_layers, edges));
             let bind = |chunk: &Chunk| {
@@ -120,11 +132,13 @@ impl MapPasses {
             };
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
+                    + midpoint.as_ref().map_or(0, MidpointPass::bytes)
                     + views.size()
                     + uniform.size()
                     + u64::from(layer_count) * size_of::<CasterUniform>() as u64,
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
-                layers: layers(gpu, settings, lookup, &map),
+                layers,
+                midpoint,
                 map,
                 lookup_pipeline,
                 points,
@@ -141,18 +155,9 @@ impl MapPasses {
     ) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow map", || {
             let mut recorder = Recorder::new(gpu);
-            for layer in &self.layers {
-                let depth = RenderPassDepthStencilAttachment {
-                    view: &layer.target,
-                    depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
-                    stencil_ops: None,
-                };
-                let no_color = if layer.writes_depth { &[None][..] } else { &[] };
-                recorder.render("map", no_color, Some(depth), |pass| {
-                    pass.set_pipeline(&layer.pipeline);
-                    pass.set_bind_group(0, &layer.bindings, &[]);
-                    geometry.draw_casters(pass);
-                });
+            record_layers(&mut recorder, "map", &self.layers, geometry);
+            if let Some(midpoint) = &self.midpoint {
+                midpoint.record(&mut recorder, geometry);
             }
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
@@ -219,25 +224,57 @@ fn all_layers(map: &Texture) -> TextureView {
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
+/// Draws the casters into every view's layer.
+pub(super) fn record_layers(recorder: &mut Recorder<'_>, name: &'static str, layers: &[Layer], geometry: &Geometry) {
+    for layer in layers {
+        let depth = RenderPassDepthStencilAttachment {
+            view: &layer.target,
+            depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
+            stencil_ops: None,
+        };
+        let no_color = if layer.writes_depth { &[None][..] } else { &[] };
+        recorder.render(name, no_color, Some(depth), |pass| {
+            pass.set_pipeline(&layer.pipeline);
+            pass.set_bind_group(0, &layer.bindings, &[]);
+            geometry.draw_casters(pass);
+        });
+    }
+}
+
+/// One layer of a texture.
+pub(super) fn layer_view(map: &Texture, index: u32) -> TextureView {
+    map.create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2),
+        base_array_layer: index,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+/// How every view is drawn into its layer of `map`: everything, or what lies behind the layers of another map.
+pub(super) fn layers(
+    gpu: &Gpu,
+    settings: &Settings,
+    lookup: &Lookup,
+    map: &Texture,
+    behind: Option<&Texture>,
+) -> Vec<Layer> {
     let mut pipelines: Vec<(Raster, RenderPipeline)> = Vec::new();
     let layer = |(index, view): (u32, &View)| {
         let raster = Raster::of(settings, lookup, view);
         let known = pipelines.iter().find(|(known, _)| *known == raster).map(|(_, pipeline)| pipeline.clone());
         let pipeline = known.unwrap_or_else(|| {
-            let built = raster.pipeline(gpu, settings, lookup);
+            let built = raster.pipeline(gpu, settings, lookup, map.format(), behind.is_some());
             pipelines.push((raster, built.clone()));
             built
         });
         let uniform = gpu.uniform("caster", caster_uniform(settings, lookup, view));
+        let nearer = behind.map(|nearer| layer_view(nearer, index));
+        let mut resources = vec![uniform.as_entire_binding()];
+        resources.extend(nearer.as_ref().map(BindingResource::TextureView));
         Layer {
-            target: map.create_view(&TextureViewDescriptor {
-                dimension: Some(TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            }),
-            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()]),
+            target: layer_view(map, index),
+            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &resources),
             pipeline,
             clear_depth: view.cleared() as f32,
             writes_depth: raster.writes_depth,
@@ -280,15 +317,25 @@ impl Raster {
         Self {
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: settings.near_mode == NearMode::FragmentClamp || view.rows.depth_q != view.rows.q,
+            writes_depth: settings.near_mode == NearMode::FragmentClamp
+                || settings.stores_midpoint()
+                || view.rows.depth_q != view.rows.q,
         }
     }
 
-    fn pipeline(&self, gpu: &Gpu, settings: &Settings, lookup: &Lookup) -> RenderPipeline {
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        settings: &Settings,
+        lookup: &Lookup,
+        format: TextureFormat,
+        is_second: bool,
+    ) -> RenderPipeline {
+        let own_depth = [CASTER_DEPTH, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: if self.writes_depth { &[CASTER_DEPTH] } else { &[CASTER] },
+            files: if self.writes_depth { &own_depth } else { &[CASTER] },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },
@@ -301,7 +348,7 @@ impl Raster {
                 ..PrimitiveState::default()
             },
             depth_stencil: Some(DepthStencilState {
-                format: settings.format.texture_format(),
+                format,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(if self.depth_sign > 0.0 {
                     CompareFunction::Less

@@ -12,6 +12,9 @@ use crate::technique::{Answer, BiasAt, EffectiveBias, Job, LightDepths, Prepared
 use glam::{DMat4, DVec2, DVec3, UVec2};
 use rayon::prelude::*;
 
+/// What `bias=midpoint` does to stored depths.
+const HALFWAY: &str = "halfway to the second surface";
+
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
     pub(super) settings: Settings,
@@ -115,7 +118,8 @@ impl Prepared for PreparedMap<'_> {
         let placed: Vec<(usize, BiasAt)> = placed.collect();
         let of_view = |(index, view): (usize, &View)| {
             let biases: Vec<BiasAt> = placed.iter().filter(|(of, _)| *of == index).map(|(_, bias)| *bias).collect();
-            EffectiveBias::of(&view.name, &biases)
+            let bias = EffectiveBias::of(&view.name, &biases)?;
+            Some(if self.settings.stores_midpoint() { bias.with_stored(HALFWAY) } else { bias })
         };
         self.lookup.views.iter().enumerate().filter_map(of_view).collect()
     }

@@ -2,7 +2,8 @@
 //! the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
 //! peter-panning that cancel.
 
-use super::exact_texels::{ExactTexel, ExactTexels};
+use super::bias::Clearance;
+use super::exact_texels::{ExactTexel, ExactTexels, exact_at};
 use super::lookup::{Lookup, Outside, Placed, Tap};
 use super::outline::Points;
 use super::own_surface::is_own_surface;
@@ -180,6 +181,10 @@ impl<'r> Replayer<'r> {
     fn biased(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let scene = self.map.job.scene;
+        if lookup.bias.clearance == Clearance::Midpoint {
+            let found = exact_at(scene, self.map.job.casters, lookup, placed.view, placed.position_in_texels);
+            return visibility(lookup.is_lit(placed.view, placed.reference, found.depth));
+        }
         let blocks = |hit: &Blocker| {
             let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
             drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {

@@ -194,6 +194,12 @@ impl Settings {
         self.filter.radius_texels(self.kernel) + 1.0 + self.fit.margin_texels
     }
 
+    /// Whether texels store the middle between two surfaces.
+    #[must_use]
+    pub fn stores_midpoint(&self) -> bool {
+        self.bias_amounts().clearance == bias::Clearance::Midpoint
+    }
+
     /// The bias axis's amounts for this filter.
     #[must_use]
     pub fn bias_amounts(&self) -> bias::Amounts {
