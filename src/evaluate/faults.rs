@@ -33,7 +33,7 @@ const FAULTS: &[Fault] = &[
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
     ("map/second_layer.wgsl", "<= SAME_LAYER", ">= SAME_LAYER", "map:bias=midpoint"),
-    ("map/midpoint.wgsl", "0.5 * (", "0.4 * (", "map:bias=midpoint"),
+    ("map/midpoint.wgsl", "0.5 * (", "0.9 * (", "map:bias=midpoint"),
     ("map/offset.wgsl", "offset.x + offset.y", "0.0", "map:size=300,bias=normal"),
     ("map/lookup.wgsl", "vec2f(texel) + 0.5 - placed", "vec2f(texel) - 0.5 - placed", "map:bias=receiver-plane"),
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),

@@ -7,7 +7,7 @@ use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
-use crate::technique::receiver_buffer::{Chunk, ReceiverBuffer, workgroups};
+use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
 use projection::{GpuView, View};
@@ -83,6 +83,7 @@ pub(super) struct MapPasses {
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
     buffer_bytes: u64,
+    texel_reads: u32,
 }
 
 /// How one view is drawn.
@@ -139,6 +140,7 @@ impl MapPasses {
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers,
                 midpoint,
+                texel_reads: texel_reads(settings, silhouettes.is_some()),
                 map,
                 lookup_pipeline,
                 points,
@@ -162,13 +164,9 @@ impl MapPasses {
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
             }
-            recorder.compute("lookup", |pass| {
-                pass.set_pipeline(&self.lookup_pipeline);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
+            receivers
+                .look_up(&mut recorder, &LookUp { name: "lookup", pipeline, bindings, texel_reads: self.texel_reads });
             recorder
         })?;
         recorder.finish("the shadow map")
@@ -217,6 +215,11 @@ impl MapPasses {
         let texels = u64::from(self.map.width()) * u64::from(self.map.height()) * self.layers.len() as u64;
         texels * settings.format.bytes() + self.buffer_bytes
     }
+}
+
+/// Texels that a lookup reads at most. With silhouettes that is one depth and the points of five cells.
+fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
+    if has_silhouettes { 1 + 5 } else { settings.filter.texel_reads(settings.kernel) }
 }
 
 fn all_layers(map: &Texture) -> TextureView {

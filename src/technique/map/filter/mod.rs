@@ -31,6 +31,12 @@ pub trait Filter: Sync {
     /// Calls `tap` with each texel and its weight for a lookup at `position_in_texels`; the f64 twin of the WGSL, in the
     /// same order. Weights add up to 1.
     fn taps(&self, kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64));
+    /// Texels that a lookup reads at most.
+    fn texel_reads(&self, kernel: u32) -> u32 {
+        let mut reads = 0;
+        self.taps(kernel, DVec2::ZERO, &mut |_, _| reads += 1);
+        reads
+    }
 }
 
 /// A registered filter; the first one for a name that no declared parameter can hold.
