@@ -113,7 +113,7 @@ fn is_lit(reference: f32, texel: vec2i) -> bool {
         }
     }
     if lookup.seam != SEAM_PER_TAP || lookup.border == BORDER_CLAMP_EDGE {
-        let nearest = clamp(texel, vec2i(0), vec2i(lookup.texels) - 1);
+        let nearest = nearest_texel(texel, lookup.texels);
         return compares_lit(own.view, reference_at(own, reference, nearest), nearest);
     }
     return lookup.border != BORDER_SHADOW;
@@ -147,7 +147,7 @@ fn border_visibility() -> f32 {
 }
 
 fn is_in_view(texel: vec2i) -> bool {
-    return all(texel >= vec2i(0)) && all(texel < vec2i(lookup.texels));
+    return all(texel == nearest_texel(texel, lookup.texels));
 }
 
 fn compares_lit(view: u32, reference: f32, texel: vec2i) -> bool {

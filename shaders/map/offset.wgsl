@@ -41,7 +41,7 @@ fn bias_depth(view: View, point_in_world: vec3f, normal_in_world: vec3f, at: InM
     }
     let slope = abs(depth_per_texel(around, normal_in_world, lookup.texels));
     let sufficient = dot(reach_texels + lookup.raster_slack_texels, slope)
-        + rounding(view, point_in_world, at, slope, lookup.texels)
+        + slack(view, point_in_world, normal_in_world, at, slope, reach_texels, lookup.texels)
         + 4.0 * (lookup.fixed_step + lookup.float_step * abs(at.depth));
     return along_light + min(sufficient, cap_depth(around));
 }

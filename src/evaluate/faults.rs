@@ -19,6 +19,15 @@ const FAULTS: &[Fault] = &[
     ("shared/receiver.wgsl", "return thread.x +", "return thread.x / 2u +", "map"),
     ("map/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", "map"),
     ("map/caster_depth.wgsl", "corner.depth.x / corner.depth.y", "corner.depth.y - corner.depth.x", IN_FRAGMENTS),
+    ("map/caster_rows.wgsl", "vec4f(clip.xy, ", "vec4f(clip.yx, ", IN_FRAGMENTS),
+    ("map/caster_paraboloid.wgsl", "seen.xy / (RIM", "seen.yx / (RIM", PARABOLOID),
+    ("map/paraboloid.wgsl", "q = distance + seen.z", "q = distance - seen.z", PARABOLOID),
+    (
+        "map/projection/dual_paraboloid.wgsl",
+        "one_view(select(0u, 1u, before < 0.0 && arrayLength(&views) > 1u))",
+        "Shares(0u, 0u, sqrt(-1.0 - before * before))",
+        PARABOLOID,
+    ),
     ("map/gather.wgsl", "texels[index].xy", "texels[index].xy + 1u", "map"),
     ("map/view.wgsl", "change / volume", "0.9 * change / volume", "map"),
     ("map/homogeneous.wgsl", "vec2f(dot(view.u_row, point), dot(view.v_row, point))", "vec2f(q)", "map"),
@@ -72,6 +81,7 @@ const FAULTS: &[Fault] = &[
     ("volume/resolve.wgsl", "count == 0u", "count <= 1u", "volume"),
 ];
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
+const PARABOLOID: &str = "map:projection=dual-paraboloid";
 const PROJECTED: &str = "projective-texture";
 const ZP_PLUS: &str = "volume:count=zp-plus";
 

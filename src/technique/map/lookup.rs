@@ -160,10 +160,15 @@ impl Lookup {
     /// Whether casters are drawn with that side towards the light.
     #[must_use]
     pub fn draws_side(&self, scene: &Scene, triangle: u32) -> bool {
+        self.draws_facing(scene.facing(triangle, self.light))
+    }
+
+    /// The same for a side by which way it faces: positive towards the light.
+    pub(super) fn draws_facing(&self, facing: f64) -> bool {
         match self.caster_sides {
             CasterSides::All => true,
-            CasterSides::LightFacing => scene.facing(triangle, self.light) > 0.0,
-            CasterSides::AwayFacing => scene.facing(triangle, self.light) < 0.0,
+            CasterSides::LightFacing => facing > 0.0,
+            CasterSides::AwayFacing => facing < 0.0,
         }
     }
 
@@ -171,8 +176,12 @@ impl Lookup {
     #[must_use]
     pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
         let site = self.views[view].site(point_in_world);
-        let is_drawn = site.at.q > 0.0 && (self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&site.at.depth));
-        is_drawn.then_some(site.at.depth)
+        (site.at.q > 0.0 && self.draws_depth(site.at.depth)).then_some(site.at.depth)
+    }
+
+    /// Whether casters of that depth are drawn: in the range, or clamped to it.
+    pub(super) fn draws_depth(&self, depth: f64) -> bool {
+        self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&depth)
     }
 
     /// Places a receiver in a view.
@@ -209,13 +218,14 @@ impl Lookup {
     /// The texel of a placed receiver's view, or beyond the view's side what stands for it; `None` outside the map.
     #[must_use]
     pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
-        if self.is_inside(texel) {
+        let own = &self.views[placed.view];
+        if own.holds(texel) {
             return Some(Tap { placed: placed.at_texel(texel), texel });
         }
         let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
         let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
         across.or_else(|| {
-            let nearest = texel.clamp(IVec2::ZERO, self.texels().as_ivec2() - 1);
+            let nearest = own.layout.nearest_texel(texel, own.texels);
             is_clamped.then_some(Tap { placed: placed.at_texel(nearest), texel: nearest })
         })
     }
@@ -230,7 +240,7 @@ impl Lookup {
         let found = self.views[view].project(beside);
         let texel = (found.uv * own.texels.as_dvec2()).floor().as_ivec2();
         let site = self.views[view].site(placed.point_in_world);
-        if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.is_inside(texel) {
+        if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.views[view].holds(texel) {
             return None;
         }
         let is_on_plane = self.bias.clearance == Clearance::ReceiverPlane;
@@ -252,16 +262,13 @@ impl Lookup {
         self.views[view].depth_sign * (reference - stored) <= 0.0
     }
 
-    fn is_inside(&self, texel: IVec2) -> bool {
-        texel.min_element() >= 0 && texel.cmplt(self.texels().as_ivec2()).all()
-    }
-
     /// Index of a texel, layer by layer and row by row, or `None` outside its view.
     #[must_use]
     pub fn texel_index(&self, view: usize, texel: IVec2) -> Option<u32> {
         let size = self.texels();
         let row = view as u32 * size.y + texel.y as u32;
-        self.is_inside(texel).then(|| row * size.x + texel.x as u32)
+        let is_inside = texel.min_element() >= 0 && texel.cmplt(size.as_ivec2()).all();
+        is_inside.then(|| row * size.x + texel.x as u32)
     }
 
     /// View and texel of an index.
@@ -366,6 +373,7 @@ mod tests {
                 selector,
                 depth_sign,
                 blend_per_m,
+                edge_rad,
                 padding
             });
             assert_eq!(wgsl_layout(&files, "View"), in_rust, "{label}");

@@ -3,7 +3,7 @@
 
 use super::bias::Clearance;
 use super::lookup::Lookup;
-use super::projection::Site;
+use super::projection::{Site, View};
 use glam::{DVec2, DVec3};
 
 /// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
@@ -71,7 +71,9 @@ impl Lookup {
     pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
         let slope_per_texel = site.slope_per_texel(normal_in_world);
         let reach = reach_texels + raster_slack_texels(self.texels().max_element());
-        reach.dot(slope_per_texel) + site.rounding(slope_per_texel) + FORMAT_STEPS * self.format.step(site.at.depth)
+        reach.dot(slope_per_texel)
+            + site.slack(normal_in_world, slope_per_texel, reach_texels)
+            + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
     /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
@@ -84,6 +86,12 @@ impl Lookup {
         let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
         let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
         let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
+        self.rasteriser_bias(view, largest, slope)
+    }
+
+    /// What the rasteriser adds to the depth of a triangle, given its largest depth and its slope per texel.
+    #[must_use]
+    pub(super) fn rasteriser_bias(&self, view: &View, largest: f64, slope: f64) -> f64 {
         let constant = f64::from(self.bias.constant_units) * self.format.hardware_unit(largest);
         let bias = constant + self.bias.slope * slope;
         let clamped = if self.bias.clamp > 0.0 { bias.min(self.bias.clamp) } else { bias };

@@ -10,7 +10,7 @@ use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Re
 use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
-use projection::{GpuView, View};
+use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
     DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
@@ -19,12 +19,12 @@ use wgpu::{
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
-/// What draws casters with a depth of the fragment's own.
 const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const CASTER_ROWS: Wgsl = wgsl!("map/caster_rows.wgsl");
+const CASTER_PARABOLOID: Wgsl = wgsl!("map/caster_paraboloid.wgsl");
 const NEAREST_LAYER: Wgsl = wgsl!("map/nearest_layer.wgsl");
 const SECOND_LAYER: Wgsl = wgsl!("map/second_layer.wgsl");
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
-const HOMOGENEOUS: Wgsl = wgsl!("map/homogeneous.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
 const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
 const GATHER: Wgsl = wgsl!("map/gather.wgsl");
@@ -32,7 +32,7 @@ const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// The files of a lookup with one value of each axis.
 fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 7] {
-    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP, OFFSET, filter]
+    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, OFFSET, filter]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -40,8 +40,10 @@ fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl;
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![
         ("map caster".to_owned(), vec![CASTER]),
-        ("map caster depth".to_owned(), vec![CASTER_DEPTH, NEAREST_LAYER]),
-        ("map second layer".to_owned(), vec![CASTER_DEPTH, SECOND_LAYER]),
+        ("map caster depth".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, NEAREST_LAYER]),
+        ("map caster paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, NEAREST_LAYER]),
+        ("map second layer".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, SECOND_LAYER]),
+        ("map second layer paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, SECOND_LAYER]),
         ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
     ];
@@ -71,6 +73,9 @@ struct CasterUniform {
     depth_sign: f32,
     clamps: u32,
     padding: [u32; 2],
+    u_row: [f32; 4],
+    v_row: [f32; 4],
+    q_row: [f32; 4],
 }
 
 /// Texture, pipelines and bindings of one map and its lookups.
@@ -92,6 +97,8 @@ pub(super) struct Layer {
     pipeline: RenderPipeline,
     bindings: BindGroup,
     clear_depth: f32,
+    /// What is drawn in place of the casters, three corners per triangle.
+    pieces: Option<Buffer>,
     /// Whether a fragment shader writes depth: its pipeline then declares one colour target, which is none.
     writes_depth: bool,
 }
@@ -136,7 +143,8 @@ impl MapPasses {
                     + midpoint.as_ref().map_or(0, MidpointPass::bytes)
                     + views.size()
                     + uniform.size()
-                    + u64::from(layer_count) * size_of::<CasterUniform>() as u64,
+                    + u64::from(layer_count) * size_of::<CasterUniform>() as u64
+                    + layers.iter().filter_map(|layer| layer.pieces.as_ref()).map(Buffer::size).sum::<u64>(),
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers,
                 midpoint,
@@ -239,7 +247,13 @@ pub(super) fn record_layers(recorder: &mut Recorder<'_>, name: &'static str, lay
         recorder.render(name, no_color, Some(depth), |pass| {
             pass.set_pipeline(&layer.pipeline);
             pass.set_bind_group(0, &layer.bindings, &[]);
-            geometry.draw_casters(pass);
+            match &layer.pieces {
+                Some(corners) => {
+                    pass.set_vertex_buffer(0, corners.slice(..));
+                    pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
+                }
+                None => geometry.draw_casters(pass),
+            }
         });
     }
 }
@@ -280,10 +294,19 @@ pub(super) fn layers(
             bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &resources),
             pipeline,
             clear_depth: view.cleared() as f32,
+            pieces: view.drawn.as_ref().map(|drawn| piece_corners(gpu, drawn)),
             writes_depth: raster.writes_depth,
         }
     };
     (0..).zip(&lookup.views).map(layer).collect()
+}
+
+/// The corners of pieces; a buffer is never empty.
+fn piece_corners(gpu: &Gpu, drawn: &Drawn) -> Buffer {
+    let mut corners: Vec<[f32; 3]> =
+        drawn.pieces.iter().flat_map(|piece| piece.corners_in_world).map(|corner| corner.to_array()).collect();
+    corners.resize(corners.len().max(3), [0.0; 3]);
+    gpu.buffer("pieces of casters", &corners, BufferUsages::VERTEX)
 }
 
 fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUniform {
@@ -303,6 +326,9 @@ fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUn
         depth_sign: view.depth_sign as f32,
         clamps: u32::from(settings.near_mode != NearMode::Extend),
         padding: [0; 2],
+        u_row: view.rows.u.to_array(),
+        v_row: view.rows.v.to_array(),
+        q_row: view.rows.q.to_array(),
     }
 }
 
@@ -313,16 +339,23 @@ struct Raster {
     winding: f64,
     /// Whether the fragment shader writes depth, because the rasteriser's is not what is stored.
     writes_depth: bool,
+    /// Whether pieces are drawn on a paraboloid's disc.
+    on_disc: bool,
 }
 
 impl Raster {
     fn of(settings: &Settings, lookup: &Lookup, view: &View) -> Self {
+        let on_disc = view.drawn.is_some();
+        let has_own_depth = match settings.near_mode {
+            NearMode::Extend => false,
+            NearMode::DepthClamp => on_disc,
+            NearMode::FragmentClamp => true,
+        };
         Self {
+            on_disc,
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: settings.near_mode == NearMode::FragmentClamp
-                || settings.stores_midpoint()
-                || view.rows.depth_q != view.rows.q,
+            writes_depth: has_own_depth || settings.stores_midpoint() || (!on_disc && view.rows.depth_q != view.rows.q),
         }
     }
 
@@ -334,11 +367,12 @@ impl Raster {
         format: TextureFormat,
         is_second: bool,
     ) -> RenderPipeline {
-        let own_depth = [CASTER_DEPTH, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
+        let placed = if self.on_disc { CASTER_PARABOLOID } else { CASTER_ROWS };
+        let own_depth = [CASTER_DEPTH, placed, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: if self.writes_depth { &own_depth } else { &[CASTER] },
+            files: if self.writes_depth || self.on_disc { &own_depth } else { &[CASTER] },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },

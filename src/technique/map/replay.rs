@@ -1,9 +1,9 @@
-//! A map replayed in f64, one approximation at a time: exact → coverage → bias → sampling → filter → stored texels →
-//! the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
-//! peter-panning that cancel.
+//! A map replayed in f64, one approximation at a time: exact → coverage → bias → chords → sampling → filter → stored
+//! texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
+//! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
 
 use super::bias::Clearance;
-use super::exact_texels::{ExactTexel, ExactTexels, exact_at};
+use super::exact_texels::{ExactTexel, ExactTexels, cast, drawn_in_pieces, held};
 use super::lookup::{Lookup, Outside, Placed, Tap};
 use super::outline::Points;
 use super::own_surface::is_own_surface;
@@ -38,7 +38,9 @@ struct Blocker {
 }
 
 /// Stage names in order.
-const STAGES: [&str; 6] = ["coverage", "bias", "sampling", "filter", "stored texels", "gpu"];
+const STAGES: [&str; 7] = ["coverage", "bias", CHORDS, "sampling", "filter", "stored texels", "gpu"];
+/// The stage of maps that are drawn in pieces.
+const CHORDS: &str = "chords";
 
 pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
     let replayer = Replayer::new(map, pixels)?;
@@ -49,10 +51,12 @@ pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Re
         values: replayed.iter().map(|(_, steps)| steps[index].value).collect(),
         causes: replayed.iter().map(|(_, steps)| steps[index].cause).collect(),
     };
+    let in_pieces = map.lookup.views.iter().any(|view| view.drawn.is_some());
+    let is_there = |(_, name): &(usize, &str)| in_pieces || *name != CHORDS;
     Ok(Replay {
         pixels: pixels.to_vec(),
         exact: replayed.iter().map(|(exact, _)| *exact).collect(),
-        stages: STAGES.into_iter().enumerate().map(stage).collect(),
+        stages: STAGES.into_iter().enumerate().filter(is_there).map(stage).collect(),
     })
 }
 
@@ -112,9 +116,9 @@ impl<'r> Replayer<'r> {
         let shares = self.map.lookup.select(receiver.point_in_world);
         let in_views: Vec<(f64, Chain)> =
             shares.iter().map(|(view, weight)| (weight, self.chain(pixel, &receiver, &hits, view))).collect();
-        let [coverage, bias, sampling, filter, stored_texels] = blended(exact, &in_views);
+        let [coverage, bias, chords, sampling, filter, stored_texels] = blended(exact, &in_views);
         let gpu = Step { value: answered, cause: Cause::Precision };
-        Some((exact, [coverage, bias, sampling, filter, stored_texels, gpu]))
+        Some((exact, [coverage, bias, chords, sampling, filter, stored_texels, gpu]))
     }
 
     /// What each stage before the GPU's makes of a receiver in one view.
@@ -127,16 +131,17 @@ impl<'r> Replayer<'r> {
         let Some(placed) = placed else {
             // Moved out along its normal.
             let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
-            return [coverage, border, border, border, Step { cause: Cause::Precision, ..border }];
+            return [coverage, border, border, border, border, Step { cause: Cause::Precision, ..border }];
         };
         let biased = self.biased(receiver, &placed);
         // Only a blocker that the bias took away asks for the reason.
         let is_lost = biased > coverage.value;
         let cause = if is_lost { self.cause_of_loss(pixel, receiver, view) } else { Cause::PeterPanning };
+        let chords = Step { value: self.by_chords(&placed).unwrap_or(biased), cause: Cause::TechniqueModel };
         let sampling = self.sampling(pixel, receiver, &placed);
         let filter = self.filter(receiver, &placed, sampling.value);
         let stored_texels = Step { value: self.by_stored_texels(receiver, &placed), cause: Cause::Precision };
-        [coverage, Step { value: biased, cause }, sampling, filter, stored_texels]
+        [coverage, Step { value: biased, cause }, chords, sampling, filter, stored_texels]
     }
 
     /// Outside the view all of the error is the border's: it answers by itself, or its texels stretch outwards.
@@ -150,7 +155,7 @@ impl<'r> Replayer<'r> {
         let exact = stretched.map_or(border, |placed| self.filter(receiver, &placed, border).value);
         let stored = stretched.map_or(border, |placed| self.by_stored_texels(receiver, &placed));
         let clipped = Step { value: exact, cause };
-        [clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
+        [clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -182,8 +187,9 @@ impl<'r> Replayer<'r> {
         let lookup = &self.map.lookup;
         let scene = self.map.job.scene;
         if lookup.bias.clearance == Clearance::Midpoint {
-            let found = exact_at(scene, self.map.job.casters, lookup, placed.view, placed.position_in_texels);
-            return visibility(lookup.is_lit(placed.view, placed.reference, found.depth));
+            let surfaces = cast(scene, self.map.job.casters, lookup, placed.view, placed.position_in_texels);
+            let stored = held(lookup, placed.view, &surfaces).depth;
+            return visibility(lookup.is_lit(placed.view, placed.reference, stored));
         }
         let blocks = |hit: &Blocker| {
             let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
@@ -193,6 +199,15 @@ impl<'r> Replayer<'r> {
             })
         };
         visibility(!self.blockers(receiver, placed.point_in_world).iter().any(blocks))
+    }
+
+    /// What the pieces that are drawn in place of the casters answer, exactly where the receiver is; `None` where the
+    /// casters themselves are drawn.
+    fn by_chords(&self, placed: &Placed) -> Option<f64> {
+        let lookup = &self.map.lookup;
+        let surfaces = drawn_in_pieces(lookup, placed.view, placed.position_in_texels)?;
+        let stored = held(lookup, placed.view, &surfaces).depth;
+        Some(visibility(lookup.is_lit(placed.view, placed.reference, stored)))
     }
 
     /// Why the blocker is lost that the bias reaches over: the bias, if the map would show it without any; if not, the

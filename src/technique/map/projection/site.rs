@@ -4,12 +4,10 @@
 //! B. Lloyd et al., "Warping and Partitioning for Low Error Shadow Maps", 2006, derive texel sizes likewise.
 
 use super::view::{Gradients, InMap, View};
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DVec2, DVec3};
 
 /// Depth per texel beyond which every bias is at its cap.
 const STEEPEST: f64 = 1e3;
-/// Relative rounding of an f32 position through the rows.
-const POSITION_ROUNDING: f64 = f32::EPSILON as f64;
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
@@ -82,17 +80,9 @@ impl Site<'_> {
         change / (depth.dot(self.ray()).abs() * self.view.texels.as_dvec2())
     }
 
-    /// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
+    /// By how much texels up to `reach_texels` away may differ from its plane's slope.
     #[must_use]
-    pub fn rounding(&self, slope_per_texel: DVec2) -> f64 {
-        let rows = &self.view.rows;
-        let reach = |row: Vec4| row.as_dvec4().abs().dot(self.point_in_world.abs().extend(1.0));
-        let quotient = |row: Vec4, divisor: Vec4, value: f64, of: f64| (reach(row) + value.abs() * reach(divisor)) / of;
-        let depth_q = super::view::apply(rows.depth_q, self.point_in_world);
-        let depth = quotient(rows.depth, rows.depth_q, self.at.depth, depth_q);
-        let u = quotient(rows.u, rows.q, self.at.uv.x, self.at.q);
-        let v = quotient(rows.v, rows.q, self.at.uv.y, self.at.q);
-        let slope = slope_per_texel * self.view.texels.as_dvec2();
-        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v)
+    pub fn slack(&self, normal_in_world: DVec3, slope_per_texel: DVec2, reach_texels: DVec2) -> f64 {
+        self.view.layout.slack(self, normal_in_world, slope_per_texel, reach_texels)
     }
 }
