@@ -92,11 +92,15 @@ impl<'e> Twin<'e> {
         let mut reach = Reach { least: 1.0, most: 0.0 };
         for shift in shifts(within.texels) {
             let (mut least, mut most) = (0.0, 0.0);
-            self.settings.filter.taps(self.settings.kernel, placed.position_in_texels + shift, &mut |texel, weight| {
-                let [dark, lit] = self.answers(placed.reference, rounding, texel, within);
-                least += if dark { 0.0 } else { weight };
-                most += if lit { weight } else { 0.0 };
-            });
+            self.settings.filter.taps(
+                &self.settings.kernel,
+                placed.position_in_texels + shift,
+                &mut |texel, weight| {
+                    let [dark, lit] = self.answers(placed.reference, rounding, texel, within);
+                    least += if dark { 0.0 } else { weight };
+                    most += if lit { weight } else { 0.0 };
+                },
+            );
             reach = Reach { least: reach.least.min(least), most: reach.most.max(most) };
         }
         reach

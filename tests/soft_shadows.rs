@@ -5,47 +5,10 @@
 
 mod support;
 
-use glam::DVec2;
 use gnomon::cause::Cause;
-use gnomon::mask::Mask;
-use gnomon::scene::Scene;
-use support::scenes::{scene_of_texts, shipped};
+use support::penumbra::{EDGE_HEIGHT, LAMP_HEIGHT, SIDE, SNAP_M, across_edge, half_plane};
+use support::scenes::shipped;
 use support::shot::{Shot, parsed};
-
-const SIDE: f64 = 1.0;
-const LAMP_HEIGHT: f64 = 4.0;
-const EDGE_HEIGHT: f64 = 1.0;
-/// Receivers and corners are rounded to f32, and rasterisers snap to 1/256 pixel: metres on the floor.
-const SNAP_M: f64 = 2e-4;
-
-/// A square lamp over a floor, and between them the half plane beyond a line through (0, 0), turned by `tilt_deg` about
-/// the vertical. The camera looks under it.
-fn half_plane(tilt_deg: f64, side: f64, gap: f64) -> Scene {
-    let (across, along) = (DVec2::from_angle(tilt_deg.to_radians()), DVec2::from_angle(tilt_deg.to_radians()).perp());
-    let corner = |at: DVec2| format!("v {} {gap} {}\n", at.x, at.y);
-    let far = 30.0;
-    let plate = [-far * along, far * along, far * (across + along), far * (across - along)].map(corner).concat();
-    let model = format!("o Floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\no Plate\n{plate}f 5 6 7 8\n");
-    let scene = format!(
-        "about = \"a half plane under a lamp\"\nsize = [128, 96]\n\
-         [camera]\neye = [-1.5, 0.8, 0.02]\ntarget = [0, 0, 0.01]\nfov_y_deg = 40\n\
-         [[mesh]]\nfile = \"model.obj\"\n\
-         [[light]]\nname = \"lamp\"\nkind = \"rectangle\"\nposition = [0, {LAMP_HEIGHT}, 0]\ntarget = [0, 0, 0]\n\
-         width = {side}\nheight = {side}\nsamples = 64\n"
-    );
-    scene_of_texts(&scene, &model)
-}
-
-/// Each floor point's place across the edge with its visibility.
-fn across_edge(shot: &Shot<'_>, mask: &Mask, tilt_deg: f64) -> Vec<(f64, f64)> {
-    let direction = DVec2::from_angle(tilt_deg.to_radians());
-    let receivers = &shot.view.receivers.pixels;
-    let on_floor = receivers.iter().zip(&mask.pixels).filter_map(|(receiver, visibility)| {
-        let point = (*receiver)?.point_in_world;
-        (point.y.abs() < 1e-6).then_some((DVec2::new(point.x, point.z).dot(direction), f64::from((*visibility)?.get())))
-    });
-    on_floor.collect()
-}
 
 /// The visible share of the square lamp for a floor point `x` across the edge.
 fn share(tilt_deg: f64, x: f64) -> f64 {

@@ -22,7 +22,13 @@ struct Lookup {
     fixed_step: f32,
     // Step of a float format relative to the depth, 0 for fixed point.
     float_step: f32,
-    padding: vec2u,
+    // Whether each tap is biased for as far as it is, not for the widest kernel.
+    reaches_by_tap: u32,
+    // Whether patterns of taps are turned, for each pixel otherwise, and by which seed.
+    turns: u32,
+    seed: u32,
+    padding: u32,
+    padding_2: vec2u,
 }
 @group(0) @binding(2) var<uniform> lookup: Lookup;
 @group(0) @binding(3) var stored_depths: texture_depth_2d_array;
@@ -46,6 +52,7 @@ struct Placed {
 
 // The receiver whose lookup is under way: filters hand taps by texel only.
 var<private> own: Placed;
+var<private> own_pixel: u32;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) thread: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -53,6 +60,7 @@ fn main(@builtin(global_invocation_id) thread: vec3u, @builtin(num_workgroups) g
     if index >= arrayLength(&receivers) {
         return;
     }
+    own_pixel = receivers[index].pixel;
     visibilities[index] = visibility(receivers[index].point_in_world, receivers[index].normal_in_world);
 }
 
@@ -103,7 +111,7 @@ fn reference_at(placed: Placed, reference: f32, texel: vec2i) -> f32 {
 // Whether the receiver under way is lit by a texel of its view, whose reference depth is given. Equality is lit.
 fn is_lit(reference: f32, texel: vec2i) -> bool {
     if is_in_view(texel) {
-        return compares_lit(own.view, reference_at(own, reference, texel), texel);
+        return compares_lit(own.view, reference_for(reference, texel), texel);
     }
     if lookup.seam == SEAM_PER_TAP {
         let across = texel_across(texel);
@@ -117,6 +125,15 @@ fn is_lit(reference: f32, texel: vec2i) -> bool {
         return compares_lit(own.view, reference_at(own, reference, nearest), nearest);
     }
     return lookup.border != BORDER_SHADOW;
+}
+
+// The reference depth of the receiver under way, with a bias for as far as the texel is where filters ask for that.
+fn reference_for(reference: f32, texel: vec2i) -> f32 {
+    if lookup.reaches_by_tap == 0u || lookup.clearance != CLEARANCE_CLOSED_FORM {
+        return reference_at(own, reference, texel);
+    }
+    let reach_texels = max(abs(vec2f(texel) + 0.5 - own.position_in_texels), vec2f(0.5));
+    return placed(own.view, own.point_in_world, own.normal_in_world, reach_texels).reference;
 }
 
 // A texel of another view that stands for one beyond the side of the receiver's view.

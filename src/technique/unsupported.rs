@@ -40,6 +40,12 @@ pub enum Unsupported {
         /// What is missing, with numbers.
         what: String,
     },
+    /// Two parameters exclude each other.
+    #[error("{why}")]
+    Combination {
+        /// Which, and what to type instead.
+        why: String,
+    },
     /// The parameters leave nothing to do.
     #[error("{why}")]
     Degenerate {

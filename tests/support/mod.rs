@@ -11,6 +11,7 @@ use testing::{Random, Shape};
 pub(crate) mod files;
 pub(crate) mod models;
 pub(crate) mod outline;
+pub(crate) mod penumbra;
 pub(crate) mod scenes;
 pub(crate) mod shot;
 #[path = "../../src/cast/testing.rs"]

@@ -36,7 +36,7 @@ mod tests {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    const RUN_KEYS: [&str; 18] = [
+    const RUN_KEYS: [&str; 19] = [
         "scene",
         "light",
         "typed",
@@ -54,6 +54,7 @@ mod tests {
         "budget",
         "jitter",
         "motion",
+        "seams",
         "bias",
     ];
 
@@ -112,6 +113,9 @@ mod tests {
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
         assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
         assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
+        assert_eq!(run["seams"]["views"][0], json!({"name": "near", "asked": 2, "wrong": 2, "mean_abs": 1.0}));
+        let bin = json!({"from_texels": 2.0, "to_texels": 4.0, "asked": 5, "wrong": 1, "mean_abs": 0.2});
+        assert_eq!(run["seams"]["distances"][2], bin);
         let of_view = [
             "acne_free",
             "along_light",
@@ -131,7 +135,7 @@ mod tests {
         let json = parsed(&report());
         assert_eq!(json["runs"][1]["status"], "unsupported");
         assert_eq!(json["runs"][2]["status"], "failed");
-        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion"] {
+        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion", "seams"] {
             assert!(json["runs"][0][key].is_object(), "{key}");
         }
         assert!(json["runs"][0]["bias"].is_array());

@@ -21,7 +21,7 @@ pub(in crate::technique) struct ExactTexel {
 }
 
 /// The texels that some lookups read, sorted by index.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(in crate::technique) struct ExactTexels {
     pub(in crate::technique) indices: Vec<u32>,
     texels: Vec<ExactTexel>,
@@ -29,10 +29,25 @@ pub(in crate::technique) struct ExactTexels {
 
 impl ExactTexels {
     /// Casts through the centres of the texels with these indices (layer by layer, row by row; any order, repeats allowed).
-    pub(in crate::technique) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, mut indices: Vec<u32>) -> Self {
+    pub(in crate::technique) fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, indices: Vec<u32>) -> Self {
+        Self::default().and_cast(scene, casters, lookup, indices)
+    }
+
+    /// The same with more texels.
+    pub(in crate::technique) fn and_cast(
+        self,
+        scene: &Scene,
+        casters: &Casters,
+        lookup: &Lookup,
+        mut indices: Vec<u32>,
+    ) -> Self {
+        indices.extend(&self.indices);
         indices.par_sort_unstable();
         indices.dedup();
-        let texels = indices.par_iter().map(|index| exact_texel(scene, casters, lookup, *index)).collect();
+        let of = |index: &u32| {
+            self.rank(*index).map_or_else(|| exact_texel(scene, casters, lookup, *index), |rank| self.at(rank))
+        };
+        let texels = indices.par_iter().map(of).collect();
         Self { indices, texels }
     }
 

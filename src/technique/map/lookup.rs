@@ -2,11 +2,13 @@
 //! specification of `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
 
 use super::bias::{Amounts, Clearance};
+use super::filter::Kernel;
 use super::offset::raster_slack_texels;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
 use crate::scene::{Bounds, Light, Scene, Segment};
+use crate::technique::InView;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
@@ -24,6 +26,8 @@ pub struct Lookup {
     caster_sides: CasterSides,
     pub(super) format: DepthFormat,
     pub(super) light: DVec4,
+    /// Whether each tap is biased for as far as it is, not for the widest kernel.
+    reaches_by_tap: bool,
 }
 
 impl std::fmt::Debug for Lookup {
@@ -104,6 +108,7 @@ impl Lookup {
             caster_sides: settings.caster_sides,
             format: settings.format,
             light: light.homogeneous(),
+            reaches_by_tap: settings.filter.reaches_by_tap(),
         }
     }
 
@@ -129,6 +134,13 @@ impl Lookup {
     #[must_use]
     pub fn select(&self, point_in_world: DVec3) -> Shares {
         self.projection.select(&self.views, point_in_world)
+    }
+
+    /// The view that mainly answers for a receiver, and how far it is to its seam.
+    #[must_use]
+    pub fn in_view(&self, point_in_world: DVec3) -> InView {
+        let view = self.select(point_in_world).first;
+        InView { view, seam_texels: self.projection.seam_texels(&self.views, view, point_in_world) }
     }
 
     /// A world point as its own view sees it, through the guard.
@@ -220,7 +232,7 @@ impl Lookup {
     pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
         let own = &self.views[placed.view];
         if own.holds(texel) {
-            return Some(Tap { placed: placed.at_texel(texel), texel });
+            return Some(Tap { placed: self.placed_for(placed, normal_in_world, texel), texel });
         }
         let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
         let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
@@ -228,6 +240,16 @@ impl Lookup {
             let nearest = own.layout.nearest_texel(texel, own.texels);
             is_clamped.then_some(Tap { placed: placed.at_texel(nearest), texel: nearest })
         })
+    }
+
+    /// A receiver with the reference that one of its view's texels is compared with: biased for as far as that is, where
+    /// filters ask for it.
+    fn placed_for(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Placed {
+        if !self.reaches_by_tap || self.bias.clearance != Clearance::ClosedForm {
+            return placed.at_texel(texel);
+        }
+        let reach_texels = (texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(DVec2::splat(0.5));
+        self.placed(placed.view, placed.point_in_world, normal_in_world, reach_texels)
     }
 
     /// The texel of another view that a texel beyond the side of the receiver's view falls in.
@@ -287,7 +309,7 @@ impl Lookup {
 
     /// The uniform of the shader.
     #[must_use]
-    pub(super) fn uniform(&self, kernel: u32) -> LookupUniform {
+    pub(super) fn uniform(&self, kernel: &Kernel) -> LookupUniform {
         let (fixed_step, float_step) = match self.format {
             DepthFormat::Depth32Float => (0.0, f32::EPSILON),
             fixed => (fixed.step(1.0) as f32, 0.0),
@@ -295,7 +317,7 @@ impl Lookup {
         LookupUniform {
             light: self.light.as_vec4().to_array(),
             texels: self.texels().as_vec2().to_array(),
-            kernel,
+            kernel: kernel.number,
             seam: self.seam as u32,
             border: self.border as u32,
             clearance: self.bias.clearance as u32,
@@ -307,7 +329,11 @@ impl Lookup {
             depth_texels: self.bias.depth_texels as f32,
             fixed_step,
             float_step,
-            padding: [0; 2],
+            reaches_by_tap: self.reaches_by_tap.into(),
+            turns: kernel.turns.into(),
+            seed: kernel.seed,
+            padding: 0,
+            padding_2: [0; 2],
         }
     }
 }
@@ -330,7 +356,11 @@ pub(super) struct LookupUniform {
     depth_texels: f32,
     fixed_step: f32,
     float_step: f32,
-    padding: [u32; 2],
+    reaches_by_tap: u32,
+    turns: u32,
+    seed: u32,
+    padding: u32,
+    padding_2: [u32; 2],
 }
 
 #[cfg(test)]
@@ -361,7 +391,11 @@ mod tests {
                 depth_texels,
                 fixed_step,
                 float_step,
+                reaches_by_tap,
+                turns,
+                seed,
                 padding,
+                padding_2,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {

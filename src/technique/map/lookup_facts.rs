@@ -1,6 +1,7 @@
 //! Where one pixel's lookup went, for people.
 
 use super::prepared::PreparedMap;
+use super::reading::{Depths, Looked};
 use super::replay::Replayer;
 use crate::technique::TechniqueError;
 
@@ -26,7 +27,9 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
             .iter()
             .map(|(view, weight)| format!("{} ({:.0} %)", map.lookup.views[view].name, 100.0 * weight))
             .collect();
-        facts.push(fact("view", named.join(", ")));
+        let seam = map.lookup.in_view(receiver.point_in_world).seam_texels;
+        let seam = seam.map_or_else(String::new, |texels| format!("; {texels:.1} texels from its seam"));
+        facts.push(fact("view", named.join(", ") + &seam));
     }
     facts.extend([
         fact("position in the map", format!("({:.4}, {:.4}) texels", at.x, at.y)),
@@ -36,13 +39,15 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
 
     let replayer = Replayer::new(map, &[pixel])?;
     let mut taps = Vec::new();
-    replayer.each_tap(&receiver, &placed, &mut |tap, _| taps.push(tap));
+    let looked = Looked { lookup: &map.lookup, pixel, receiver, placed };
+    let reading = &replayer.reading;
+    reading.each_tap(Depths::Exact, &looked, &mut |tap, _| taps.push(tap));
     for tap in taps.iter().take(LISTED_TAPS) {
         let Some(tap) = tap else {
             facts.push(fact("texel", "outside the map".to_owned()));
             continue;
         };
-        let (Some(stored), Some(exact)) = (replayer.stored(tap), replayer.exact(tap)) else { continue };
+        let (Some(stored), Some(exact)) = (reading.depth(Depths::Stored, tap), reading.exact(tap)) else { continue };
         let lit = if map.lookup.is_lit(tap.placed.view, tap.placed.reference, stored) { "lit" } else { "shadow" };
         let holds = exact.triangle.map_or_else(
             || "nothing".to_owned(),

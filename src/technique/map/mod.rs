@@ -20,6 +20,7 @@ mod own_surface;
 mod passes;
 mod prepared;
 pub mod projection;
+mod reading;
 mod remedies;
 mod replay;
 mod settings;
@@ -29,7 +30,7 @@ pub use depth_format::DepthFormat;
 pub(in crate::technique) use exact_texels::ExactTexels;
 pub use lookup::{Lookup, Outside, Placed, Tap};
 pub use passes::shader_modules;
-pub use settings::{Around, Border, CasterSides, Fit, NearMode, Seam, Settings};
+pub use settings::{Around, Border, CasterSides, DepthMetric, Fit, NearMode, Seam, Settings};
 pub(in crate::technique) use texel_footprint::texel_footprint;
 
 use super::param::{Choice, Kind, Param, Value};
@@ -56,6 +57,9 @@ impl Technique for Map {
     fn params(&self) -> &'static [Param] {
         &PARAMS
     }
+    fn needs_of_picture(&self, spec: &Spec) -> &'static [&'static str] {
+        Settings::of(spec).projection.needs_of_picture()
+    }
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
         let settings = Settings::of(spec);
         let limit = gpu.limits().texture_side;
@@ -67,19 +71,47 @@ impl Technique for Map {
             let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
             return Err(Unsupported::MissingFeature { what });
         }
-        if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {
-            let why = "bias=midpoint lies between two sides of casters: it needs caster_sides=all".to_owned();
-            return Err(Unsupported::Degenerate { why });
-        }
+        fits_together(&settings)?;
         settings.projection.supports(scene, light, &settings)
     }
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
         remedies::remedies(spec, cause)
     }
+    fn blamed_for_centre(&self, spec: &Spec) -> Option<Cause> {
+        // A filter that makes up for taking the light for its centre owns what it leaves.
+        Some(if Settings::of(spec).filter.softens() { Cause::FilterWidth } else { Cause::TechniqueModel })
+    }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job, None)?))
     }
+}
+
+/// Whether the filter, the projection and the measure of depth do.
+fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
+    let (filter, projection) = (settings.filter.choice().name, settings.projection.name());
+    let refused = |why: String| Err(Unsupported::Combination { why });
+    let is_linear = settings.depth_metric == DepthMetric::Linear;
+    if settings.filter.needs_linear_depth() && !is_linear {
+        return refused(format!("filter={filter} reckons with distances: it needs depth_metric=linear, or auto"));
+    }
+    if is_linear && !settings.projection.has_linear_depth() {
+        return refused(format!("projection={projection} warps depth along: it has no depth_metric=linear"));
+    }
+    if settings.filter.softens() && !settings.projection.is_frustum() {
+        return refused(format!(
+            "filter={filter} takes the light's extent into account in a plain frustum only, not in projection={projection}"
+        ));
+    }
+    if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {
+        return refused("bias=midpoint lies between two sides of casters: it needs caster_sides=all".to_owned());
+    }
+    if settings.stores_midpoint() && settings.filter.needs_linear_depth() {
+        return refused(format!(
+            "filter={filter} reckons with blockers' distances, which bias=midpoint does not store"
+        ));
+    }
+    Ok(())
 }
 
 /// Far beyond any scene f32 can hold with useful precision.
@@ -240,6 +272,13 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "which sides of casters are drawn",
         ),
         param(
+            "depth_metric",
+            "",
+            plain(&["auto", "projected", "linear"]),
+            Value::Choice("auto", None),
+            "what depth measures: what the rasteriser gives, or the distance along the view; auto: linear where the filter needs it",
+        ),
+        param(
             "seam",
             "",
             plain(&["per-tap", "clamp"]),
@@ -254,6 +293,7 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
             "what stands for the map beyond its border",
         ),
     ]);
+    params.extend(filter::params());
     params.extend(projection::params());
     params.extend(fit_params());
     params

@@ -9,7 +9,7 @@ use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Mat4};
+use glam::{DVec3, Mat4, Vec4};
 use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
@@ -31,8 +31,13 @@ const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// The files of a lookup with one value of each axis.
-fn lookup_files(projection: &dyn projection::Projection, filter: Wgsl) -> [Wgsl; 7] {
-    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, OFFSET, filter]
+fn lookup_files(projection: &dyn projection::Projection, filter: &dyn filter::Filter) -> Vec<Wgsl> {
+    [&shared_files(projection), filter.builds_on(), &[filter.shader()]].concat()
+}
+
+/// Those of a lookup that only lacks its filter.
+fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 6] {
+    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, OFFSET]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -49,11 +54,11 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
     let single = projection::by_name("single");
-    modules.push(("silhouette lookup".to_owned(), lookup_files(single, WEDGES).to_vec()));
+    modules.push(("silhouette lookup".to_owned(), [&shared_files(single)[..], &[WEDGES]].concat()));
     for projection in projection::registry() {
         for filter in filter::registry() {
             let label = format!("map lookup {} {}", projection.name(), filter.choice().name);
-            modules.push((label, lookup_files(*projection, filter.shader()).to_vec()));
+            modules.push((label, lookup_files(*projection, *filter)));
         }
     }
     modules
@@ -109,6 +114,7 @@ impl MapPasses {
         gpu: &Gpu,
         settings: &Settings,
         lookup: &Lookup,
+        numbers: &[Vec4],
         receivers: &ReceiverBuffer,
         silhouettes: Option<&[[DVec3; 2]]>,
     ) -> Result<Self, GpuError> {
@@ -119,9 +125,13 @@ impl MapPasses {
             let map = gpu.texture_array("shadow map", lookup.texels(), layer_count, format, usage);
             let views: Vec<GpuView> = lookup.views.iter().map(View::gpu).collect();
             let views = gpu.buffer("views", &views, BufferUsages::STORAGE);
-            let uniform = gpu.uniform("lookup", lookup.uniform(settings.kernel));
-            let filter = if silhouettes.is_some() { WEDGES } else { settings.filter.shader() };
-            let lookup_pipeline = gpu.compute_pipeline("map lookup", &lookup_files(settings.projection, filter));
+            let uniform = gpu.uniform("lookup", lookup.uniform(&settings.kernel));
+            let numbers = (!numbers.is_empty()).then(|| gpu.buffer("filter numbers", numbers, BufferUsages::STORAGE));
+            let files = match silhouettes {
+                Some(_) => [&shared_files(settings.projection)[..], &[WEDGES]].concat(),
+                None => lookup_files(settings.projection, settings.filter),
+            };
+            let lookup_pipeline = gpu.compute_pipeline("map lookup", &files);
             let midpoint = settings.stores_midpoint().then(|| MidpointPass::new(gpu, settings, lookup, &map));
             let nearest = midpoint.as_ref().map_or(&map, MidpointPass::nearest);
             let layers = layers(gpu, settings, lookup, nearest, None);
@@ -135,12 +145,14 @@ impl MapPasses {
                     BindingResource::TextureView(&all_layers),
                     views.as_entire_binding(),
                 ];
+                resources.extend(numbers.as_ref().map(Buffer::as_entire_binding));
                 resources.extend(points.as_ref().map(|points| BindingResource::TextureView(&points.view)));
                 gpu.bind(&lookup_pipeline.get_bind_group_layout(0), &resources)
             };
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
                     + midpoint.as_ref().map_or(0, MidpointPass::bytes)
+                    + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
                     + u64::from(layer_count) * size_of::<CasterUniform>() as u64
@@ -227,7 +239,7 @@ impl MapPasses {
 
 /// Texels that a lookup reads at most. With silhouettes that is one depth and the points of five cells.
 fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
-    if has_silhouettes { 1 + 5 } else { settings.filter.texel_reads(settings.kernel) }
+    if has_silhouettes { 1 + 5 } else { settings.filter.texel_reads(&settings.kernel) }
 }
 
 fn all_layers(map: &Texture) -> TextureView {

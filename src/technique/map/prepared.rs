@@ -8,8 +8,10 @@ use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, BiasAt, EffectiveBias, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
-use glam::{DMat4, DVec2, DVec3, UVec2};
+use crate::technique::{
+    Answer, BiasAt, EffectiveBias, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError,
+};
+use glam::{DMat4, DVec2, DVec3, UVec2, Vec4};
 use rayon::prelude::*;
 
 /// What `bias=midpoint` does to stored depths.
@@ -21,6 +23,8 @@ pub(super) struct PreparedMap<'j> {
     pub(super) lookup: Lookup,
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
+    /// What the filter's shader and its twin are told.
+    pub(super) numbers: Vec<Vec4>,
     pub(super) scene_radius_m: f64,
     /// The edges of the casters' silhouettes, for a map that draws them.
     pub(super) silhouettes: Option<Vec<[DVec3; 2]>>,
@@ -38,10 +42,11 @@ impl<'j> PreparedMap<'j> {
         let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let passes = MapPasses::new(job.gpu, settings, &lookup, &receivers, silhouettes)?;
+        let numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let passes = MapPasses::new(job.gpu, settings, &lookup, &numbers, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
-        Ok(Self { job, settings: *settings, lookup, passes, receivers, scene_radius_m, silhouettes })
+        Ok(Self { job, settings: *settings, lookup, passes, receivers, numbers, scene_radius_m, silhouettes })
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -64,7 +69,7 @@ impl<'j> PreparedMap<'j> {
         let by_rasteriser = lookup.hardware_bias(placed.view, corners).abs();
         let along_light_depth = (placed.depth - placed.reference).abs() + by_rasteriser;
         let along_light_m = along_light_depth * metres_per_depth;
-        let kernel = self.settings.filter.bias_kernel(self.settings.kernel);
+        let kernel = self.settings.filter.bias_kernel(&self.settings.kernel);
         let acne_free = lookup.closed_form(&site, receiver.normal_in_world, DVec2::splat(kernel));
         let light = self.job.light.homogeneous();
         let to_light = (light.truncate() - receiver.point_in_world * light.w).normalize_or_zero();
@@ -136,6 +141,14 @@ impl Prepared for PreparedMap<'_> {
         let receiver = self.receiver(pixel)?;
         let site = self.lookup.project(receiver.point_in_world).ok()?;
         texel_footprint(&self.job, &site, &receiver)
+    }
+
+    fn view_names(&self) -> Vec<String> {
+        self.lookup.views.iter().map(|view| view.name.clone()).collect()
+    }
+
+    fn in_view(&self, pixel: u32) -> Option<InView> {
+        Some(self.lookup.in_view(self.receiver(pixel)?.point_in_world))
     }
 
     fn light_frusta(&self) -> Vec<DMat4> {

@@ -3,18 +3,18 @@
 //! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
 
 use super::bias::Clearance;
-use super::exact_texels::{ExactTexel, ExactTexels, cast, drawn_in_pieces, held};
+use super::exact_texels::{ExactTexel, cast, drawn_in_pieces, held};
 use super::lookup::{Lookup, Outside, Placed, Tap};
-use super::outline::Points;
 use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
+use super::reading::{Depths, Looked, Reading, place};
 use crate::cast::Hit;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
 use crate::technique::footprint::aliasing_cause;
 use crate::technique::{Prepared, TechniqueError};
-use glam::{DVec2, DVec3, IVec2};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Up to here a filtered answer counts as shadow.
@@ -65,46 +65,14 @@ pub(super) struct Replayer<'r> {
     map: &'r PreparedMap<'r>,
     /// The lookup without any bias: what the bias is to blame for, it gets right.
     unbiased: Lookup,
-    /// Every texel that these pixels' lookups read.
-    texels: ExactTexels,
-    /// What the GPU holds in them.
-    stored: Vec<f64>,
-    /// The silhouettes' points as they should be drawn over the GPU's depths.
-    points: Option<Points>,
-    /// What the GPU drew.
-    stored_points: Option<Points>,
+    pub(super) reading: Reading<'r>,
 }
 
 impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
-        let stored_points = map.passes.points(map.job.gpu)?;
-        let points = match &map.silhouettes {
-            Some(edges) => Some(Points::drawn(edges, &map.lookup.views[0], &map.all_depths()?)),
-            None => None,
-        };
-        let texels_of = |pixel: &u32| {
-            let mut indices = Vec::new();
-            let Some(receiver) = map.receiver(*pixel) else { return indices };
-            for (view, _) in map.lookup.select(receiver.point_in_world).iter() {
-                for placed in [&map.lookup, &unbiased].into_iter().filter_map(|lookup| place(lookup, view, &receiver)) {
-                    let mut read = |tap: Option<Tap>| {
-                        indices.extend(tap.and_then(|tap| map.lookup.texel_index(tap.placed.view, tap.texel)));
-                    };
-                    read(map.lookup.tap(&placed, receiver.normal_in_world, own_texel(points.as_ref(), &placed)));
-                    for points in [points.as_ref(), stored_points.as_ref()] {
-                        taps(map, points, placed.position_in_texels, &mut |texel, _| {
-                            read(map.lookup.tap(&placed, receiver.normal_in_world, texel));
-                        });
-                    }
-                }
-            }
-            indices
-        };
-        let indices = pixels.par_iter().flat_map_iter(texels_of).collect();
-        let texels = ExactTexels::cast(map.job.scene, map.job.casters, &map.lookup, indices);
-        let stored = map.passes.gather(map.job.gpu, &map.lookup, &texels.indices)?;
-        Ok(Self { map, unbiased, texels, stored, points, stored_points })
+        let reading = Reading::new(map, &unbiased, pixels)?;
+        Ok(Self { map, unbiased, reading })
     }
 
     /// The exact answer at a pixel and what each stage makes of it.
@@ -125,7 +93,8 @@ impl<'r> Replayer<'r> {
     fn chain(&self, pixel: u32, receiver: &Receiver, hits: &[Blocker], view: usize) -> Chain {
         let placed = place(&self.map.lookup, view, receiver);
         if let Err(outside) = self.map.lookup.project_in(view, receiver.point_in_world) {
-            return self.beyond_the_border(receiver, outside, placed);
+            let stretched = placed.map(|placed| self.looked(pixel, receiver, placed));
+            return self.beyond_the_border(outside, stretched);
         }
         let coverage = self.coverage(view, hits);
         let Some(placed) = placed else {
@@ -138,22 +107,27 @@ impl<'r> Replayer<'r> {
         let is_lost = biased > coverage.value;
         let cause = if is_lost { self.cause_of_loss(pixel, receiver, view) } else { Cause::PeterPanning };
         let chords = Step { value: self.by_chords(&placed).unwrap_or(biased), cause: Cause::TechniqueModel };
-        let sampling = self.sampling(pixel, receiver, &placed);
-        let filter = self.filter(receiver, &placed, sampling.value);
-        let stored_texels = Step { value: self.by_stored_texels(receiver, &placed), cause: Cause::Precision };
+        let looked = self.looked(pixel, receiver, placed);
+        let sampling = self.sampling(&looked);
+        let filter = self.filter(&looked, sampling.value);
+        let stored_texels = Step { value: self.by_stored_texels(&looked), cause: Cause::Precision };
         [coverage, Step { value: biased, cause }, chords, sampling, filter, stored_texels]
     }
 
+    fn looked(&self, pixel: u32, receiver: &Receiver, placed: Placed) -> Looked<'_> {
+        Looked { lookup: &self.map.lookup, pixel, receiver: *receiver, placed }
+    }
+
     /// Outside the view all of the error is the border's: it answers by itself, or its texels stretch outwards.
-    fn beyond_the_border(&self, receiver: &Receiver, outside: Outside, stretched: Option<Placed>) -> Chain {
+    fn beyond_the_border(&self, outside: Outside, stretched: Option<Looked<'_>>) -> Chain {
         let cause = match outside {
             Outside::Near => Cause::ClippingNear,
             Outside::Far => Cause::ClippingFar,
             Outside::Frustum => Cause::ClippingFrustum,
         };
         let border = self.map.lookup.border_visibility();
-        let exact = stretched.map_or(border, |placed| self.filter(receiver, &placed, border).value);
-        let stored = stretched.map_or(border, |placed| self.by_stored_texels(receiver, &placed));
+        let exact = stretched.map_or(border, |looked| self.filter(&looked, border).value);
+        let stored = stretched.map_or(border, |looked| self.by_stored_texels(&looked));
         let clipped = Step { value: exact, cause };
         [clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
@@ -214,32 +188,26 @@ impl<'r> Replayer<'r> {
     /// texels, which are too coarse for it either way.
     fn cause_of_loss(&self, pixel: u32, receiver: &Receiver, view: usize) -> Cause {
         let Some(placed) = place(&self.unbiased, view, receiver) else { return Cause::PeterPanning };
-        let mut value = 0.0;
-        taps(self.map, self.points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
-            let tap = self.unbiased.tap(&placed, receiver.normal_in_world, texel);
-            let lit = tap.and_then(|tap| Some((tap, self.exact(&tap)?))).map(|(tap, found)| {
-                visibility(self.unbiased.is_lit(tap.placed.view, tap.placed.reference, found.unbiased_depth))
-            });
-            value += weight * lit.unwrap_or(self.unbiased.border_visibility());
-        });
+        let looked = Looked { lookup: &self.unbiased, ..self.looked(pixel, receiver, placed) };
+        let value =
+            self.reading.mean(Depths::Unbiased, &looked, &mut |tap, _| self.answer(Depths::Unbiased, &looked, tap));
         if value <= HALF_LIT { Cause::PeterPanning } else { aliasing_cause(self.map.footprint(pixel).as_ref()) }
     }
 
     /// The answer of the receiver's own texel with exact depth.
-    fn sampling(&self, pixel: u32, receiver: &Receiver, placed: &Placed) -> Step {
-        let own_texel = self.map.lookup.tap(placed, receiver.normal_in_world, own_texel(self.points.as_ref(), placed));
-        let (value, own) = self.compare(receiver, own_texel.as_ref());
-        Step { value, cause: own.unwrap_or_else(|| aliasing_cause(self.map.footprint(pixel).as_ref())) }
+    fn sampling(&self, looked: &Looked<'_>) -> Step {
+        let own_texel = looked.tap(self.reading.own_texel(&looked.placed));
+        let (value, own) = self.compare(looked, own_texel.as_ref());
+        Step { value, cause: own.unwrap_or_else(|| aliasing_cause(self.map.footprint(looked.pixel).as_ref())) }
     }
 
     /// The filter's answer with exact depths. It belongs to the receiver's own surface where that is most of what moved
     /// the value.
-    fn filter(&self, receiver: &Receiver, placed: &Placed, sampled: f64) -> Step {
-        let (mut value, mut self_shadow, mut other) = (0.0, 0.0, 0.0);
+    fn filter(&self, looked: &Looked<'_>, sampled: f64) -> Step {
+        let (mut self_shadow, mut other) = (0.0, 0.0);
         let mut self_cause = Cause::Acne;
-        self.each_tap(receiver, placed, &mut |tap, weight| {
-            let (lit, own) = self.compare(receiver, tap.as_ref());
-            value += weight * lit;
+        let value = self.reading.mean(Depths::Exact, looked, &mut |tap, weight| {
+            let (lit, own) = self.compare(looked, tap.as_ref());
             match own {
                 Some(cause) => {
                     self_shadow += weight;
@@ -247,31 +215,32 @@ impl<'r> Replayer<'r> {
                 }
                 None => other += weight * (lit - sampled).abs(),
             }
+            lit
         });
         let is_self = self_shadow > other && value < sampled;
         Step { value, cause: if is_self { self_cause } else { Cause::FilterWidth } }
     }
 
     /// The filter's answer with the depths that the GPU holds.
-    fn by_stored_texels(&self, receiver: &Receiver, placed: &Placed) -> f64 {
-        let lookup = &self.map.lookup;
-        let mut value = 0.0;
-        taps(self.map, self.stored_points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
-            let tap = lookup.tap(placed, receiver.normal_in_world, texel);
-            let lit = tap
-                .and_then(|tap| Some((tap, self.stored(&tap)?)))
-                .map(|(tap, depth)| visibility(lookup.is_lit(tap.placed.view, tap.placed.reference, depth)));
-            value += weight * lit.unwrap_or(lookup.border_visibility());
-        });
-        value
+    fn by_stored_texels(&self, looked: &Looked<'_>) -> f64 {
+        self.reading.mean(Depths::Stored, looked, &mut |tap, _| self.answer(Depths::Stored, looked, tap))
+    }
+
+    /// What one texel answers.
+    fn answer(&self, depths: Depths, looked: &Looked<'_>, tap: Option<Tap>) -> f64 {
+        let lookup = looked.lookup;
+        tap.and_then(|tap| Some((tap, self.reading.depth(depths, &tap)?)))
+            .map_or(lookup.border_visibility(), |(tap, depth)| {
+                visibility(lookup.is_lit(tap.placed.view, tap.placed.reference, depth))
+            })
     }
 
     /// What one texel answers with exact depth; where that is dark and it holds the receiver's own surface, why.
-    fn compare(&self, receiver: &Receiver, tap: Option<&Tap>) -> (f64, Option<Cause>) {
-        let lookup = &self.map.lookup;
-        match tap.and_then(|tap| Some((tap, self.exact(tap)?))) {
+    fn compare(&self, looked: &Looked<'_>, tap: Option<&Tap>) -> (f64, Option<Cause>) {
+        let lookup = looked.lookup;
+        match tap.and_then(|tap| Some((tap, self.reading.exact(tap)?))) {
             Some((tap, found)) if !lookup.is_lit(tap.placed.view, tap.placed.reference, found.depth) => {
-                (0.0, self.self_shadowing(receiver, tap, found))
+                (0.0, self.self_shadowing(&looked.receiver, tap, found))
             }
             Some(_) => (1.0, None),
             None => (lookup.border_visibility(), None),
@@ -290,7 +259,7 @@ impl<'r> Replayer<'r> {
             return Some(Cause::Acne);
         }
         let placed = &tap.placed;
-        let kernel = DVec2::splat(map.settings.filter.bias_kernel(map.settings.kernel));
+        let kernel = DVec2::splat(map.settings.filter.bias_kernel(&map.settings.kernel));
         // For the kernel or, across a seam, for as far as the texel is.
         let reach = (tap.texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(kernel);
         let site = map.lookup.views[placed.view].site(placed.point_in_world);
@@ -299,27 +268,6 @@ impl<'r> Replayer<'r> {
         let reference = placed.depth - site.view.depth_sign * sufficient;
         let is_cleared = map.lookup.is_lit(placed.view, reference, found.unbiased_depth);
         Some(if is_cleared { Cause::Acne } else { Cause::Curvature })
-    }
-
-    /// Calls `tap` with what each tap of a lookup reads (`None` outside the map) and its weight.
-    pub(super) fn each_tap(&self, receiver: &Receiver, placed: &Placed, tap: &mut dyn FnMut(Option<Tap>, f64)) {
-        taps(self.map, self.points.as_ref(), placed.position_in_texels, &mut |texel, weight| {
-            tap(self.map.lookup.tap(placed, receiver.normal_in_world, texel), weight);
-        });
-    }
-
-    fn rank(&self, tap: &Tap) -> Option<usize> {
-        self.map.lookup.texel_index(tap.placed.view, tap.texel).and_then(|index| self.texels.rank(index))
-    }
-
-    /// What an ideal map holds in a texel that a lookup reads.
-    pub(super) fn exact(&self, tap: &Tap) -> Option<ExactTexel> {
-        self.rank(tap).map(|rank| self.texels.at(rank))
-    }
-
-    /// What the GPU's map holds there.
-    pub(super) fn stored(&self, tap: &Tap) -> Option<f64> {
-        self.rank(tap).map(|rank| self.stored[rank])
     }
 }
 
@@ -340,24 +288,6 @@ fn blended(exact: f64, in_views: &[(f64, Chain)]) -> Chain {
         }
         Step { value, cause }
     })
-}
-
-pub(super) fn place(lookup: &Lookup, view: usize, receiver: &Receiver) -> Option<Placed> {
-    lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()
-}
-
-/// Calls `tap` with the texels of a lookup at a place in the map and their weights: those of the filter or, with
-/// silhouettes, the one on the same side of the outline.
-fn taps(map: &PreparedMap<'_>, points: Option<&Points>, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-    match points {
-        Some(points) => tap(points.texel(position_in_texels), 1.0),
-        None => map.settings.filter.taps(map.settings.kernel, position_in_texels, tap),
-    }
-}
-
-/// The texel that alone answers for a receiver.
-fn own_texel(points: Option<&Points>, placed: &Placed) -> IVec2 {
-    points.map_or_else(|| placed.own_texel(), |points| points.texel(placed.position_in_texels))
 }
 
 fn visibility(is_lit: bool) -> f64 {

@@ -12,14 +12,16 @@ pub struct Settings {
     pub projection: &'static dyn projection::Projection,
     /// Filter axis.
     pub filter: &'static dyn filter::Filter,
-    /// The number behind the filter's name.
-    pub kernel: u32,
+    /// What is typed about the filter.
+    pub kernel: filter::Kernel,
     /// Bias axis.
     pub bias: &'static dyn bias::Bias,
     /// What a texel stores.
     pub format: DepthFormat,
     /// True where 1 is near the light.
     pub reversed: bool,
+    /// What depth measures.
+    pub depth_metric: DepthMetric,
     /// The numeric bias parameters as typed.
     pub bias_numbers: bias::Numbers,
     /// How the frustum is fitted.
@@ -45,6 +47,15 @@ pub enum NearMode {
     DepthClamp,
     /// The same, but fragments clamp their depth: for devices that cannot.
     FragmentClamp,
+}
+
+/// What depth measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DepthMetric {
+    /// What the rasteriser gives: hyperbolic in the distance for a perspective map.
+    Projected,
+    /// Distance along the view's axis, 0 at the near plane and 1 at the far one.
+    Linear,
 }
 
 /// Which sides of casters are drawn.
@@ -135,15 +146,20 @@ impl Settings {
     /// Reads a `map` specification, whose parameters are declared in the family's list.
     #[must_use]
     pub fn of(spec: &Spec) -> Self {
-        let (filter_name, kernel) = spec.choice("filter");
+        let filter = filter::by_name(spec.choice("filter").0);
         Self {
             size: spec.integer("size") as u32,
             projection: projection::by_name(spec.choice("projection").0),
-            filter: filter::by_name(filter_name),
-            kernel,
+            filter,
+            kernel: filter::Kernel::of(spec),
             bias: bias::by_name(spec.choice("bias").0),
             format: format_of(spec),
             reversed: spec.choice("depth_convention").0 == "reversed",
+            depth_metric: match spec.choice("depth_metric").0 {
+                "linear" => DepthMetric::Linear,
+                "auto" if filter.needs_linear_depth() => DepthMetric::Linear,
+                _ => DepthMetric::Projected,
+            },
             bias_numbers: bias_numbers_of(spec),
             fit: Fit::of(spec),
             near_mode: match spec.choice("near_mode").0 {
@@ -174,10 +190,11 @@ impl Settings {
             size: spec.integer("size") as u32 + 1,
             projection: projection::by_name("single"),
             filter: filter::by_name("pcf-bilinear"),
-            kernel: 1,
+            kernel: filter::Kernel::wide(1),
             bias: bias::by_name(spec.choice("bias").0),
             format: format_of(spec),
             reversed: spec.choice("depth_convention").0 == "reversed",
+            depth_metric: DepthMetric::Projected,
             bias_numbers: bias_numbers_of(spec),
             fit: Fit::of(spec),
             near_mode: NearMode::Extend,
@@ -191,7 +208,7 @@ impl Settings {
     /// Texels between the fit and the map's rim, so that kernels stay inside.
     #[must_use]
     pub fn rim_texels(&self) -> f64 {
-        self.filter.radius_texels(self.kernel) + 1.0 + self.fit.margin_texels
+        self.filter.radius_texels(&self.kernel) + 1.0 + self.fit.margin_texels
     }
 
     /// Whether texels store the middle between two surfaces.
@@ -203,7 +220,7 @@ impl Settings {
     /// The bias axis's amounts for this filter.
     #[must_use]
     pub fn bias_amounts(&self) -> bias::Amounts {
-        self.bias.amounts(&self.bias_numbers, self.filter.bias_kernel(self.kernel))
+        self.bias.amounts(&self.bias_numbers, self.filter.bias_kernel(&self.kernel))
     }
 }
 

@@ -61,7 +61,8 @@ impl Technique for ProjectiveTexture {
 static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
     let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
     let receivers = ["non-casters", "all"].into_iter().map(Choice::plain).collect();
-    let filters = filter::registry().iter().map(|filter| filter.choice()).collect();
+    let filters =
+        filter::registry().iter().filter(|filter| !filter.reads_map()).map(|filter| filter.choice()).collect();
     let mut params = vec![
         param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the picture"),
         param(

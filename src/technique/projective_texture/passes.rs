@@ -28,7 +28,7 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         (label, vec![RECEIVER, LOOKUP, filter.shader()])
     };
     let caster = ("projective texture caster".to_owned(), vec![CASTER]);
-    std::iter::once(caster).chain(filter::registry().iter().map(lookup)).collect()
+    std::iter::once(caster).chain(filter::registry().iter().filter(|f| !f.reads_map()).map(lookup)).collect()
 }
 
 /// 0 where a caster is, 1 elsewhere; one byte per texel.
@@ -84,7 +84,7 @@ impl PicturePasses {
             let uniform = LookupUniform {
                 map_from_world: view.map_from_world(),
                 texels: texels.as_vec2().to_array(),
-                kernel: settings.map.kernel,
+                kernel: settings.map.kernel.number,
                 padding: 0,
             };
             let uniform = buffer(bytemuck::bytes_of(&uniform), BufferUsages::UNIFORM);

@@ -55,7 +55,7 @@ fn position(picture: &PreparedPicture<'_>, receiver: &Receiver) -> Option<DVec2>
 
 fn each_tap(picture: &PreparedPicture<'_>, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
     let map = &picture.settings.map;
-    map.filter.taps(map.kernel, position_in_texels, tap);
+    map.filter.taps(&map.kernel, position_in_texels, tap);
 }
 
 /// Every texel that the lookups of these pixels and their sampling stage read.

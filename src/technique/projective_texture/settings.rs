@@ -3,7 +3,8 @@
 use crate::scene::Mesh;
 use crate::technique::Spec;
 use crate::technique::map::{
-    Border, CasterSides, DepthFormat, Fit, NearMode, Seam, Settings as MapSettings, bias, filter, projection,
+    Border, CasterSides, DepthFormat, DepthMetric, Fit, NearMode, Seam, Settings as MapSettings, bias, filter,
+    projection,
 };
 
 /// Everything the user can set about a projective texture.
@@ -44,10 +45,11 @@ impl Settings {
             size: spec.integer("size") as u32,
             projection: projection::by_name("single"),
             filter: filter::by_name(filter_name),
-            kernel,
+            kernel: filter::Kernel::wide(kernel),
             bias: bias::by_name("none"),
             format: DepthFormat::Depth32Float,
             reversed: true,
+            depth_metric: DepthMetric::Projected,
             bias_numbers: NO_BIAS,
             fit: Fit::of(spec),
             near_mode: NearMode::Extend,

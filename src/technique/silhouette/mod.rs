@@ -42,7 +42,7 @@ impl Technique for Silhouette {
         if settings.stores_midpoint() {
             let why =
                 "an outline is hidden or not by the nearest depths, which bias=midpoint does not store".to_owned();
-            return Err(Unsupported::Degenerate { why });
+            return Err(Unsupported::Combination { why });
         }
         settings.projection.supports(scene, light, &settings)
     }

@@ -3,19 +3,30 @@
 //! Adding one: a file here, a WGSL file of the same stem in `shaders/map/filter/` that defines `filter_visibility`, a
 //! line in [`registry`].
 
+mod kernel;
 mod nearest;
 mod pcf_bilinear;
 mod pcf_box;
 mod pcf_poisson;
+mod pcss;
+mod turn;
 
-use crate::gpu::shader::Wgsl;
+pub use kernel::{Kernel, params};
+
+use super::lookup::Placed;
+use super::projection::View;
+use crate::gpu::shader::{Wgsl, wgsl};
+use crate::scene::Light;
 use crate::technique::param::Choice;
-use glam::{DVec2, IVec2};
+use glam::{DVec2, IVec2, Vec4};
+
+/// `numbers` of the shaders.
+const NUMBERS: Wgsl = wgsl!("map/numbers.wgsl");
 
 /// Every filter.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Filter] {
-    &[&nearest::Nearest, &pcf_box::PcfBox, &pcf_bilinear::PcfBilinear, &pcf_poisson::PcfPoisson]
+    &[&nearest::Nearest, &pcf_box::PcfBox, &pcf_bilinear::PcfBilinear, &pcf_poisson::PcfPoisson, &pcss::Pcss]
 }
 
 /// A filter over comparison results.
@@ -24,19 +35,68 @@ pub trait Filter: Sync {
     fn choice(&self) -> Choice;
     /// The WGSL that defines `filter_visibility`.
     fn shader(&self) -> Wgsl;
+    /// What that builds on besides the lookup.
+    fn builds_on(&self) -> &'static [Wgsl] {
+        &[]
+    }
     /// How far beyond the receiver's own texel a tap may lie, texels.
-    fn radius_texels(&self, kernel: u32) -> f64;
+    fn radius_texels(&self, kernel: &Kernel) -> f64;
     /// How many texel widths of depth slope an acne-free bias needs (docs/map.md#bias).
-    fn bias_kernel(&self, kernel: u32) -> f64;
+    fn bias_kernel(&self, kernel: &Kernel) -> f64;
     /// Calls `tap` with each texel and its weight for a lookup at `position_in_texels`; the f64 twin of the WGSL, in the
     /// same order. Weights add up to 1.
-    fn taps(&self, kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64));
+    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64));
+
     /// Texels that a lookup reads at most.
-    fn texel_reads(&self, kernel: u32) -> u32 {
+    fn texel_reads(&self, kernel: &Kernel) -> u32 {
         let mut reads = 0;
         self.taps(kernel, DVec2::ZERO, &mut |_, _| reads += 1);
         reads
     }
+
+    /// The same where taps follow from what the map holds. `blocker` gives the depth of a texel of the receiver's view
+    /// that is nearer to the light than the receiver, `None` for others. No taps at all: lit.
+    fn taps_at(&self, asked: &Asked<'_>, _blocker: Blocker<'_>, tap: &mut dyn FnMut(IVec2, f64)) {
+        self.taps(asked.kernel, asked.placed.position_in_texels, tap);
+    }
+    /// Whether its shader reads the map itself, not only which of its texels are lit.
+    fn reads_map(&self) -> bool {
+        false
+    }
+    /// Whether it reckons with distances, so that depth must be linear.
+    fn needs_linear_depth(&self) -> bool {
+        false
+    }
+    /// Whether it answers for the whole of an area light, not for its centre.
+    fn softens(&self) -> bool {
+        false
+    }
+    /// Whether each tap is compared with a bias for as far as it is, for kernels that differ by receiver.
+    fn reaches_by_tap(&self) -> bool {
+        false
+    }
+    /// What its shader reads as `numbers`, and its twin in [`Asked::numbers`].
+    fn numbers(&self, _kernel: &Kernel, _light: &Light) -> Vec<Vec4> {
+        Vec::new()
+    }
+}
+
+/// See [`Filter::taps_at`].
+pub type Blocker<'b> = &'b mut dyn FnMut(IVec2) -> Option<f64>;
+
+/// A lookup that a filter is asked to answer.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// What is typed about the filter.
+    pub kernel: &'a Kernel,
+    /// [`Filter::numbers`].
+    pub numbers: &'a [Vec4],
+    /// Index of the receiver's pixel.
+    pub pixel: u32,
+    /// The receiver's view.
+    pub view: &'a View,
+    /// The receiver in it.
+    pub placed: &'a Placed,
 }
 
 /// A registered filter; the first one for a name that no declared parameter can hold.
@@ -52,7 +112,7 @@ mod tests {
 
     fn taps(name: &str, kernel: u32, at: DVec2) -> Vec<(IVec2, f64)> {
         let mut taps = Vec::new();
-        by_name(name).taps(kernel, at, &mut |texel, weight| taps.push((texel, weight)));
+        by_name(name).taps(&Kernel::wide(kernel), at, &mut |texel, weight| taps.push((texel, weight)));
         taps
     }
 
@@ -66,7 +126,7 @@ mod tests {
                 prop_assert!((taps.iter().map(|t| t.1).sum::<f64>() - 1.0).abs() < 1e-12);
                 let own = DVec2::new(u, v).floor();
                 let farthest = taps.iter().map(|t| (t.0.as_dvec2() - own).abs().max_element()).fold(0.0, f64::max);
-                prop_assert!(farthest <= filter.radius_texels(kernel), "{} {farthest}", name);
+                prop_assert!(farthest <= filter.radius_texels(&Kernel::wide(kernel)), "{} {farthest}", name);
             }
         }
 

@@ -1,6 +1,6 @@
 //! `nearest`: the texel that holds the receiver decides alone.
 
-use super::Filter;
+use super::{Filter, Kernel};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::technique::param::Choice;
 use glam::{DVec2, IVec2};
@@ -16,13 +16,13 @@ impl Filter for Nearest {
     fn shader(&self) -> Wgsl {
         wgsl!("map/filter/nearest.wgsl")
     }
-    fn radius_texels(&self, _kernel: u32) -> f64 {
+    fn radius_texels(&self, _kernel: &Kernel) -> f64 {
         0.0
     }
-    fn bias_kernel(&self, _kernel: u32) -> f64 {
+    fn bias_kernel(&self, _kernel: &Kernel) -> f64 {
         0.5
     }
-    fn taps(&self, _kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+    fn taps(&self, _kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
         tap(position_in_texels.floor().as_ivec2(), 1.0);
     }
 }

@@ -4,7 +4,7 @@
 //! W. Reeves, D. Salesin, R. Cook, "Rendering Antialiased Shadows with Depth Maps", 1987, weighted as texture hardware
 //! does it. Neighbouring lookups share texels, so (n + 1)² comparisons are enough.
 
-use super::Filter;
+use super::{Filter, Kernel};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::technique::param::{Choice, ChoiceNumber};
 use glam::{DVec2, IVec2};
@@ -20,14 +20,14 @@ impl Filter for PcfBilinear {
     fn shader(&self) -> Wgsl {
         wgsl!("map/filter/pcf_bilinear.wgsl")
     }
-    fn radius_texels(&self, kernel: u32) -> f64 {
-        f64::from(kernel.div_ceil(2))
+    fn radius_texels(&self, kernel: &Kernel) -> f64 {
+        f64::from(kernel.number.div_ceil(2))
     }
-    fn bias_kernel(&self, kernel: u32) -> f64 {
-        0.5 * f64::from(kernel + 1)
+    fn bias_kernel(&self, kernel: &Kernel) -> f64 {
+        0.5 * f64::from(kernel.number + 1)
     }
-    fn taps(&self, kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-        let n = kernel as i32;
+    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+        let n = kernel.number as i32;
         let start = position_in_texels - 0.5 * f64::from(n);
         let first = start.floor();
         let part = start - first;

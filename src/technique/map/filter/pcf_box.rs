@@ -3,7 +3,7 @@
 //! W. Reeves, D. Salesin, R. Cook, "Rendering Antialiased Shadows with Depth Maps", 1987. Its penumbra is n texels wide
 //! whatever the truth is (`filter-width`).
 
-use super::Filter;
+use super::{Filter, Kernel};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::technique::param::{Choice, ChoiceNumber};
 use glam::{DVec2, IVec2};
@@ -19,14 +19,14 @@ impl Filter for PcfBox {
     fn shader(&self) -> Wgsl {
         wgsl!("map/filter/pcf_box.wgsl")
     }
-    fn radius_texels(&self, kernel: u32) -> f64 {
-        f64::from(kernel / 2)
+    fn radius_texels(&self, kernel: &Kernel) -> f64 {
+        f64::from(kernel.number / 2)
     }
-    fn bias_kernel(&self, kernel: u32) -> f64 {
-        0.5 * f64::from(kernel)
+    fn bias_kernel(&self, kernel: &Kernel) -> f64 {
+        0.5 * f64::from(kernel.number)
     }
-    fn taps(&self, kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-        let n = kernel as i32;
+    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+        let n = kernel.number as i32;
         let first = if n % 2 == 1 {
             position_in_texels.floor().as_ivec2() - (n - 1) / 2
         } else {

@@ -5,7 +5,7 @@
 //! Tracing", 1991): each of its points is the farthest from those before it among 4000 random ones, so its beginning of
 //! any length is spread evenly too. It begins at the centre, so one tap is `nearest`.
 
-use super::Filter;
+use super::{Filter, Kernel};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::technique::param::{Choice, ChoiceNumber};
 use glam::{DVec2, IVec2};
@@ -38,16 +38,16 @@ impl Filter for PcfPoisson {
     fn shader(&self) -> Wgsl {
         wgsl!("map/filter/pcf_poisson.wgsl")
     }
-    fn radius_texels(&self, kernel: u32) -> f64 {
-        if kernel == 1 { 0.0 } else { RADIUS_TEXELS }
+    fn radius_texels(&self, kernel: &Kernel) -> f64 {
+        if kernel.number == 1 { 0.0 } else { RADIUS_TEXELS }
     }
-    fn bias_kernel(&self, kernel: u32) -> f64 {
+    fn bias_kernel(&self, kernel: &Kernel) -> f64 {
         0.5 + self.radius_texels(kernel)
     }
-    fn taps(&self, kernel: u32, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-        for [x, y] in PATTERN.into_iter().take(kernel as usize) {
+    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+        for [x, y] in PATTERN.into_iter().take(kernel.number as usize) {
             let offset = DVec2::new(x.into(), y.into()) * (RADIUS_TEXELS / UNITS);
-            tap((position_in_texels + offset).floor().as_ivec2(), 1.0 / f64::from(kernel));
+            tap((position_in_texels + offset).floor().as_ivec2(), 1.0 / f64::from(kernel.number));
         }
     }
 }

@@ -38,6 +38,14 @@ impl Projection for Cube {
         wgsl!("map/projection/cube.wgsl")
     }
 
+    fn has_linear_depth(&self) -> bool {
+        true
+    }
+
+    fn is_frustum(&self) -> bool {
+        true
+    }
+
     fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
         position(light).map(|_| ())
     }
@@ -76,6 +84,7 @@ impl Projection for Cube {
                 far_m,
                 shape: Shape::Perspective,
                 reversed: settings.reversed,
+                depth_metric: settings.depth_metric,
                 texels: UVec2::splat(settings.size),
             };
             // Distance along the face's axis.
@@ -98,6 +107,15 @@ impl Projection for Cube {
             }
         }
         Shares::one(best)
+    }
+
+    /// Along the tangent that reaches 1 on the nearest side.
+    fn seam_texels(&self, views: &[View], view: usize, point_in_world: DVec3) -> Option<f64> {
+        let along = |view: &View| view.selector.as_dvec4().dot(point_in_world.extend(1.0));
+        let others = views.iter().enumerate().filter(|(i, _)| *i != view);
+        let nearest = others.map(|(_, other)| along(other)).reduce(f64::max)?;
+        let half = 0.5 * f64::from(views[view].texels.x) / HALF_WIDTH;
+        Some(half * (1.0 - nearest / along(&views[view])))
     }
 }
 
@@ -131,6 +149,7 @@ fn jitter(settings: &Settings) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::map::settings::DepthMetric;
 
     /// CU-1: solid angle of a texel at the middle of a face, of a side and at a corner.
     #[test]
@@ -142,6 +161,7 @@ mod tests {
             far_m: 10.0,
             shape: Shape::Perspective,
             reversed: true,
+            depth_metric: DepthMetric::Projected,
             texels: UVec2::splat(1024),
         };
         let view = frustum.view("face +X");

@@ -2,7 +2,8 @@
 
 use super::homogeneous::Homogeneous;
 use super::view::{Rows, View};
-use glam::{DMat4, DVec2, UVec2, Vec4, dcamera::rh};
+use crate::technique::map::settings::DepthMetric;
+use glam::{DMat4, DVec2, DVec4, UVec2, Vec4, dcamera::rh};
 
 /// How rays run through the frustum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub struct LightFrustum {
     pub shape: Shape,
     /// True where 1 is near the light.
     pub reversed: bool,
+    /// What depth measures.
+    pub depth_metric: DepthMetric,
     /// Width and height of the map in texels.
     pub texels: UVec2,
 }
@@ -81,12 +84,20 @@ impl LightFrustum {
     #[must_use]
     pub fn view(&self, name: &str) -> View {
         let clip_from_world = self.clip_from_world();
+        let projected = Rows::of_clip(&clip_from_world);
+        let rows = match (self.depth_metric, self.shape) {
+            (DepthMetric::Linear, Shape::Perspective) => {
+                Rows { depth: self.linear_depth_row().as_vec4(), depth_q: Vec4::W, ..projected }
+            }
+            // An orthographic depth is linear as it is.
+            (DepthMetric::Linear, Shape::Parallel) | (DepthMetric::Projected, _) => projected,
+        };
         View {
             name: name.to_owned(),
             window: self.window_text(),
             near_far: format!("{:.6} m, {:.6} m", self.near_m, self.far_m),
             layout: &Homogeneous,
-            rows: Rows::of_clip(&clip_from_world),
+            rows,
             clip_from_world: clip_from_world.as_mat4(),
             selector: Vec4::ZERO,
             blend_per_m: 0.0,
@@ -94,6 +105,13 @@ impl LightFrustum {
             texels: self.texels,
             drawn: None,
         }
+    }
+
+    /// (d − n)/(f − n) of the distance d along the view's axis, or 1 less that.
+    fn linear_depth_row(&self) -> DVec4 {
+        let distance = -self.light_view_from_world.row(2);
+        let (first, last) = if self.reversed { (self.far_m, self.near_m) } else { (self.near_m, self.far_m) };
+        (distance - first * DVec4::W) / (last - first)
     }
 
     fn window_text(&self) -> String {
@@ -132,7 +150,9 @@ mod tests {
         let window = Window { min: DVec2::new(-1.0, -0.5), max: DVec2::new(2.0, 1.5) };
         let light_view_from_world = DMat4::IDENTITY;
         let texels = UVec2::new(64, 32);
-        LightFrustum { light_view_from_world, window, near_m: 1.0, far_m: 30.0, shape, reversed, texels }.view("test")
+        let depth_metric = DepthMetric::Projected;
+        LightFrustum { light_view_from_world, window, near_m: 1.0, far_m: 30.0, shape, reversed, depth_metric, texels }
+            .view("test")
     }
 
     /// Depth of a point `distance` in front of the light, by the formulas of docs/map.md.

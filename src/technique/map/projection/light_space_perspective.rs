@@ -71,6 +71,7 @@ impl Projection for LightSpacePerspective {
             far_m: 1.0,
             shape: Shape::Parallel,
             reversed: settings.reversed,
+            depth_metric: settings.depth_metric,
             texels: UVec2::splat(settings.size),
         };
         let view = View::of_clip(plain.view("map"), &clip_from_world, sign);

@@ -39,6 +39,10 @@ impl Projection for Perspective {
         Ok(())
     }
 
+    fn needs_of_picture(&self) -> &'static [&'static str] {
+        &["a light that is not among what is seen"]
+    }
+
     fn fit(
         &self,
         scene: &Scene,
@@ -140,8 +144,8 @@ impl LightInCamera {
             Shape::Parallel => (nearest - slack, farthest + slack),
             Shape::Perspective => ((nearest - slack).max(0.5 * nearest), farthest + slack),
         };
-        let reversed = settings.reversed;
-        Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, texels })
+        let (reversed, depth_metric) = (settings.reversed, settings.depth_metric);
+        Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, depth_metric, texels })
     }
 }
 

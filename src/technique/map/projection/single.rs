@@ -39,6 +39,14 @@ impl Projection for Single {
         ONE_VIEW
     }
 
+    fn has_linear_depth(&self) -> bool {
+        true
+    }
+
+    fn is_frustum(&self) -> bool {
+        true
+    }
+
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         // What the camera sees is not known yet; such a fit is checked when it is made.
         if settings.fit.around == Around::Receivers {
@@ -82,7 +90,8 @@ pub(super) fn frustum(
         reach.planes(light, shape, settings)
     };
     let (near_m, far_m) = fit.planes_m(fitted)?;
-    Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed: settings.reversed, texels })
+    let (reversed, depth_metric) = (settings.reversed, settings.depth_metric);
+    Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, depth_metric, texels })
 }
 
 fn view(scene: &Scene, light: &Light, fit: &Fit, visible: &[DVec3]) -> Result<LightView, Unsupported> {

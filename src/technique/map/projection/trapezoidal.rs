@@ -29,6 +29,10 @@ impl Projection for Trapezoidal {
         ONE_VIEW
     }
 
+    fn has_linear_depth(&self) -> bool {
+        true
+    }
+
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         single::Single.supports(scene, light, settings)
     }

@@ -1,0 +1,186 @@
+//! `pcss`: percentage-closer soft shadows. The mean distance of the blockers around the receiver gives the width of the
+//! penumbra that they throw, and that the width of the kernel.
+//!
+//! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane, parallel to the map's, and
+//! that the light looks at them from there: the kernel is then the light as the receiver sees it through that plane, with
+//! a rectangle's own sides or a sphere's disc. Known failures: blockers at several distances, blockers that the search
+//! misses, and the limits of the widths (`filter-width`). Formulas: docs/map.md#percentage-closer-soft-shadows.
+
+use super::turn::{TURN, shifted, turned};
+use super::{Asked, Blocker, Filter, Kernel, NUMBERS};
+use crate::gpu::shader::{Wgsl, wgsl};
+use crate::scene::{Light, LightKind};
+use crate::technique::param::{Choice, ChoiceNumber};
+use glam::{DVec2, DVec3, IVec2, Vec2, Vec3, Vec4};
+use std::f64::consts::PI;
+
+/// k taps in the kernel, and others in the search.
+#[derive(Debug)]
+pub(super) struct Pcss;
+
+/// Where the numbers hold the light's half sides, and where the places of the taps begin.
+const HALVES: usize = 1;
+const PLACES: usize = 3;
+
+impl Filter for Pcss {
+    fn choice(&self) -> Choice {
+        Choice { name: "pcss", number: Some(ChoiceNumber { min: 1, max: 256, default: 32 }) }
+    }
+    fn shader(&self) -> Wgsl {
+        wgsl!("map/filter/pcss.wgsl")
+    }
+    fn builds_on(&self) -> &'static [Wgsl] {
+        &[NUMBERS, TURN]
+    }
+    /// Kernels follow from what the map holds: the fit leaves no room for them.
+    fn radius_texels(&self, _kernel: &Kernel) -> f64 {
+        0.0
+    }
+    fn bias_kernel(&self, _kernel: &Kernel) -> f64 {
+        0.5
+    }
+    /// For a light without extent.
+    fn taps(&self, _kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+        tap(position_in_texels.floor().as_ivec2(), 1.0);
+    }
+    fn reads_map(&self) -> bool {
+        true
+    }
+    fn needs_linear_depth(&self) -> bool {
+        true
+    }
+    fn softens(&self) -> bool {
+        true
+    }
+    fn reaches_by_tap(&self) -> bool {
+        true
+    }
+
+    fn taps_at(&self, asked: &Asked<'_>, blocker: Blocker<'_>, tap: &mut dyn FnMut(IVec2, f64)) {
+        let (kernel, position) = (asked.kernel, asked.placed.position_in_texels);
+        let cone = Cone::of(asked);
+        let search = cone.limited(cone.spread(cone.near_m), kernel.max_texels);
+        let (mut depth, mut blockers) = (0.0, 0.0);
+        for i in 0..kernel.search_taps {
+            let place = cone.place(asked, PLACES + i as usize, search);
+            if let Some(found) = blocker((position + place).floor().as_ivec2()) {
+                depth += found;
+                blockers += 1.0;
+            }
+        }
+        if blockers == 0.0 {
+            return;
+        }
+        let blocker_m = cone.distance_m + (depth / blockers - asked.placed.depth) * cone.metres_per_depth;
+        let spread = cone.limited(cone.spread(blocker_m), kernel.max_texels);
+        if spread * cone.widest() < kernel.min_texels {
+            tap(position.floor().as_ivec2(), 1.0);
+            return;
+        }
+        for i in 0..kernel.number {
+            let place = cone.place(asked, PLACES + (kernel.search_taps + i) as usize, spread);
+            tap((position + place).floor().as_ivec2(), 1.0 / f64::from(kernel.number));
+        }
+    }
+
+    /// The light's half sides (a sphere's radius with a 1 behind it), then the places of the search's taps and those of
+    /// the kernel's: in the unit disc for a sphere, else in the unit square.
+    fn numbers(&self, kernel: &Kernel, light: &Light) -> Vec<Vec4> {
+        let counts =
+            [kernel.search_taps as f32, kernel.number as f32, kernel.min_texels as f32, kernel.max_texels as f32];
+        let halves = match light.kind {
+            LightKind::Rectangle { half_width, half_height, .. } => [half_width.extend(0.0), half_height.extend(0.0)],
+            LightKind::Sphere { radius_m, .. } => [Vec4::new(radius_m, 0.0, 0.0, 1.0), Vec4::ZERO],
+            LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => [Vec4::ZERO; 2],
+        };
+        let places = if halves[0].w == 1.0 { disc } else { square };
+        let of_taps = [kernel.search_taps, kernel.number].into_iter().flat_map(places);
+        std::iter::once(Vec4::from_array(counts))
+            .chain(halves)
+            .chain(of_taps.map(|p| p.extend(0.0).extend(0.0)))
+            .collect()
+    }
+}
+
+/// What a receiver sees of the light, in its view.
+struct Cone {
+    /// The light's half sides, or the radii along u and v, at one metre from the light: texels × metres.
+    axes: [DVec2; 2],
+    /// Of the receiver along the view's axis.
+    distance_m: f64,
+    /// Of the view's near plane.
+    near_m: f64,
+    /// Along the axis, away from the light.
+    metres_per_depth: f64,
+}
+
+impl Cone {
+    fn of(asked: &Asked<'_>) -> Self {
+        let (view, rows) = (asked.view, &asked.view.rows);
+        let xyz = |row: Vec4| row.truncate().as_dvec3();
+        let axis = xyz(rows.q);
+        if axis == DVec3::ZERO {
+            // Parallel rays come from a light without extent.
+            return Self { axes: [DVec2::ZERO; 2], distance_m: 1.0, near_m: 1.0, metres_per_depth: 0.0 };
+        }
+        let across = |row: Vec4| xyz(row) - axis * (xyz(row).dot(axis) / axis.length_squared());
+        let (u, v) = (across(rows.u), across(rows.v));
+        let texels = view.texels.as_dvec2();
+        let on_map = |half: Vec3| texels * DVec2::new(u.dot(half.as_dvec3()), v.dot(half.as_dvec3()));
+        let halves = [asked.numbers[HALVES], asked.numbers[HALVES + 1]];
+        let radius_m = f64::from(halves[0].x);
+        let axes = if halves[0].w == 1.0 {
+            [DVec2::X, DVec2::Y].map(|along| along * texels * DVec2::new(u.length(), v.length()) * radius_m)
+        } else {
+            halves.map(|half| on_map(half.truncate()))
+        };
+        let metres_per_depth = view.depth_sign * axis.length() / xyz(rows.depth).length();
+        let distance_m = view.project(asked.placed.point_in_world).q;
+        let near_depth = if view.depth_sign > 0.0 { 0.0 } else { 1.0 };
+        Self {
+            axes,
+            distance_m,
+            near_m: distance_m + (near_depth - asked.placed.depth) * metres_per_depth,
+            metres_per_depth,
+        }
+    }
+
+    /// How wide the light is, through a point at a distance before the receiver: 1/metres, a factor of its axes.
+    fn spread(&self, blocker_m: f64) -> f64 {
+        (self.distance_m - blocker_m) / (self.distance_m * blocker_m)
+    }
+
+    /// Width of the wider axis, texels × metres.
+    fn widest(&self) -> f64 {
+        2.0 * self.axes[0].length().max(self.axes[1].length())
+    }
+
+    /// A spread that is no wider than that many texels.
+    fn limited(&self, spread: f64, max_texels: f64) -> f64 {
+        if spread * self.widest() > max_texels { max_texels / self.widest() } else { spread }
+    }
+
+    /// Where a tap lies from the receiver, texels.
+    fn place(&self, asked: &Asked<'_>, index: usize, spread: f64) -> DVec2 {
+        let listed = Vec2::new(asked.numbers[index].x, asked.numbers[index].y).as_dvec2();
+        let place = if asked.numbers[HALVES].w == 1.0 {
+            turned(asked.kernel, asked.pixel, listed)
+        } else {
+            2.0 * shifted(asked.kernel, asked.pixel, listed) - 1.0
+        };
+        spread * (place.x * self.axes[0] + place.y * self.axes[1])
+    }
+}
+
+/// Places in the unit square: J. Hammersley, "Monte Carlo Methods for Solving Multivariable Problems", 1960.
+fn square(count: u32) -> Vec<Vec2> {
+    let height = |i: u32| (f64::from(i.reverse_bits()) + 0.5) / 2.0_f64.powi(32);
+    (0..count).map(|i| DVec2::new((f64::from(i) + 0.5) / f64::from(count), height(i)).as_vec2()).collect()
+}
+
+/// Places in the unit disc: H. Vogel, "A Better Way to Construct the Sunflower Head", 1979.
+fn disc(count: u32) -> Vec<Vec2> {
+    let golden_angle = PI * (3.0 - 5.0_f64.sqrt());
+    let place = |i: f64| DVec2::from_angle(i * golden_angle) * ((i + 0.5) / f64::from(count)).sqrt();
+    (0..count).map(|i| place(i.into()).as_vec2()).collect()
+}
