@@ -13,6 +13,8 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod means;
+mod moment_passes;
 mod outline;
 mod own_surface;
 mod passes;
@@ -57,7 +59,8 @@ impl Technique for Map {
     }
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
         let settings = Settings::of(spec);
-        let limit = gpu.limits().texture_side;
+        let has_moments = settings.filter.moments().is_some();
+        let limit = gpu.limits().texture_side - if has_moments { moment_passes::side(0) } else { 0 };
         if settings.size > limit {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
             return Err(Unsupported::MissingFeature { what });
@@ -92,6 +95,11 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
     }
     if is_linear && !settings.projection.has_linear_depth() {
         return refused(format!("projection={projection} warps depth along: it has no depth_metric=linear"));
+    }
+    if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
+        return refused(format!(
+            "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
+        ));
     }
     if settings.filter.softens() && !settings.projection.is_frustum() {
         return refused(format!(

@@ -2,7 +2,7 @@
 
 use super::lookup::Lookup;
 use super::passes::MapPasses;
-use super::{Placed, Settings, texel_footprint};
+use super::{Placed, Settings, filter, texel_footprint};
 use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
@@ -35,7 +35,14 @@ impl<'j> PreparedMap<'j> {
         let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let own_numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let numbers = match settings.filter.moments() {
+            Some(moments) => {
+                let (texels, sign) = (settings.kernel.number, lookup.views[0].depth_sign);
+                filter::moments::numbers(moments, own_numbers, texels, settings.z_beyond(), sign)
+            }
+            None => own_numbers,
+        };
         let passes = MapPasses::new(job.gpu, settings, &lookup, &numbers, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
@@ -102,6 +109,10 @@ impl Prepared for PreparedMap<'_> {
             ],
             views => views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect(),
         };
+        // What cannot be read back is not told.
+        if let Ok(Some(overflowed)) = self.passes.overflowed(self.job.gpu) {
+            facts.push(("overflowed moments".to_owned(), overflowed.to_string()));
+        }
         facts.extend([
             ("effective bias".to_owned(), spread(&biases, |bias| bias.effective_m)),
             ("acne-free bias".to_owned(), spread(&biases, |bias| bias.acne_free_m)),
