@@ -58,7 +58,7 @@ fn check(gpu: &Gpu, name: &str, spec: &Spec) -> Done {
     let scene = scene(name)?;
     let view = View::new(gpu, &scene)?;
     let question = view.ask(scene.light(LIGHT).ok_or("no such light")?, &Unwatched)?;
-    let evaluation = evaluate(&view, &question, spec, Effort::FULL, &Unwatched)?;
+    let evaluation = evaluate(&view, &question, spec, Effort::CAUSES, &Unwatched)?;
     black_box(evaluation.ledger.wrong.len());
     Ok(())
 }
@@ -90,7 +90,7 @@ fn diagnosed(gpu: &Gpu, name: &str, spec: &Spec) -> Done {
     let scene = scene(name)?;
     let view = View::new(gpu, &scene)?;
     let question = view.ask(scene.light(LIGHT).ok_or("no such light")?, &Unwatched)?;
-    let evaluation = evaluate(&view, &question, spec, Effort { timed_runs: 1, explains: true }, &Unwatched)?;
+    let evaluation = evaluate(&view, &question, spec, Effort::CAUSES, &Unwatched)?;
     let mut trials = Trials::new(&view, &question);
     black_box(diagnose(&mut trials, spec, &evaluation, &Unwatched)?.len());
     black_box(search_bias(&mut trials, spec, &Unwatched)?.is_some());

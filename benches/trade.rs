@@ -1,5 +1,5 @@
-//! What trading costs: a truth taken from the cache beside one worked out; the HTML report of twenty runs; and the search
-//! of `advise` beside trying everything. Each line says what it should stay below.
+//! What trading costs: a truth taken from the cache beside one worked out; and the HTML report of twenty runs. Each line
+//! says what it should stay below.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
@@ -10,9 +10,8 @@ use gnomon::report::Report;
 use gnomon::report::export::Exporter;
 use gnomon::report::html::{Imagery, QuestionImages, RunImages};
 use gnomon::report::model::{Adapter, Question, Run};
-use gnomon::scene::{LoadOptions, Scene, load};
+use gnomon::scene::{Light, LoadOptions, Scene, load};
 use gnomon::technique::Spec;
-use gnomon::trade::advise::{Trial, lines, search};
 use gnomon::trade::specs_of_grids;
 use gnomon::truth::TruthKey;
 use gnomon::watch::Unwatched;
@@ -25,19 +24,10 @@ use std::time::Instant;
 type Done<T = ()> = Result<T, Box<dyn Error>>;
 
 const SIZE: UVec2 = UVec2::splat(1024);
-/// 8 sizes × 25 lines.
-const GRID: &str = "map:size=16..2048,filter=nearest|pcf-box2|pcf-box3|pcf-box4|pcf-box5,\
-                    bias_cap_texels=4|8|16|32|64";
-const BUDGETS: [f64; 3] = [0.02, 0.005, 0.001];
-
 fn main() -> Done {
     let gpu = Gpu::open()?;
     truth_cache(&gpu)?;
-    html(&gpu)?;
-    for name in ["torus", "room", "posts", "contact", "polygons-69"] {
-        advise(&gpu, name)?;
-    }
-    Ok(())
+    html(&gpu)
 }
 
 fn scene(name: &str, size: UVec2) -> Done<Scene> {
@@ -84,7 +74,9 @@ fn truth_cache(gpu: &Gpu) -> Done {
 fn html(gpu: &Gpu) -> Done {
     let scene = scene("kitchen", SIZE).or_else(|_| scene("torus", SIZE))?;
     let view = View::new(gpu, &scene)?;
-    let question = view.ask(&scene.lights[0], &Unwatched)?;
+    let grids = ["map:size=64..1024,filter=nearest|pcf-box5,bias=none|closed-form".to_owned()];
+    let specs = specs_of_grids(&grids)?;
+    let question = view.ask(light_for(&specs[0], &scene, gpu)?, &Unwatched)?;
     let mut imagery = Imagery::default();
     imagery.ask(&QuestionImages {
         classes: &question.classes,
@@ -94,14 +86,15 @@ fn html(gpu: &Gpu) -> Done {
         meshes: &scene.meshes,
     })?;
     let mut runs = Vec::new();
-    let grids = ["map:size=64..1024,filter=nearest|pcf-box5,bias=none|closed-form".to_owned()];
-    for spec in specs_of_grids(&grids)? {
-        let evaluation = evaluate(&view, &question, &spec, Effort::CAUSES, &Unwatched)?;
+    for spec in &specs {
+        let evaluation = evaluate(&view, &question, spec, Effort::CAUSES, &Unwatched)?;
         let pixels = 0..question.classes.len() as u32;
         let m: Vec<Option<f64>> = pixels.map(|pixel| evaluation.prepared.footprint(pixel).map(|f| f.m)).collect();
         let (mask, ledger, replay) = (&evaluation.mask, &evaluation.ledger, &evaluation.replay);
         imagery.answer(&RunImages { explain: "", mask, ledger, replay, m: &m })?;
-        runs.push(Run::judged(asked(&scene, &spec), &evaluation.verdict).explained_by(&evaluation.ledger));
+        runs.push(
+            Run::judged(asked(&scene, question.light, spec), &evaluation.verdict).explained_by(&evaluation.ledger),
+        );
     }
     let report = Report::new(Adapter::default(), runs);
     let start = Instant::now();
@@ -114,46 +107,20 @@ fn html(gpu: &Gpu) -> Done {
     Ok(())
 }
 
-fn asked(scene: &Scene, spec: &Spec) -> Question {
+/// The first light that a technique applies to.
+fn light_for<'s>(spec: &Spec, scene: &'s Scene, gpu: &Gpu) -> Done<&'s Light> {
+    let applies = |light: &&Light| spec.technique().supports(spec, scene, light, gpu).is_ok();
+    Ok(scene.lights.iter().find(applies).ok_or("no light that the technique applies to")?)
+}
+
+fn asked(scene: &Scene, light: &Light, spec: &Spec) -> Question {
     Question {
         scene: scene.name.clone(),
-        light: scene.lights[0].name.clone(),
+        light: light.name.clone(),
         typed: spec.typed.clone(),
         technique: spec.to_string(),
         command: String::new(),
         image: scene.image_size,
         wrong_above: 0.5,
     }
-}
-
-/// The search of a grid of 200 beside trying all of it: the same cost, with at most a quarter tried.
-fn advise(gpu: &Gpu, name: &str) -> Done {
-    let scene = scene(name, UVec2::new(160, 120))?;
-    let view = View::new(gpu, &scene)?;
-    let specs = specs_of_grids(&[GRID.to_owned()])?;
-    let applies = |light: &&gnomon::scene::Light| specs[0].technique().supports(&specs[0], &scene, light, gpu).is_ok();
-    let light = scene.lights.iter().find(applies).ok_or("no light that a map can hold")?;
-    let question = view.ask(light, &Unwatched)?;
-    let lines = lines(&specs);
-    let trial = |spec: &Spec| -> Done<Trial> {
-        let evaluation = evaluate(&view, &question, spec, Effort::VERDICT, &Unwatched)?;
-        let cost = evaluation.cost.work().unwrap_or(evaluation.cost.bytes) as f64;
-        let grows = 1.5 * (spec.integer("size") as f64).powi(2);
-        let error = evaluation.verdict.error.wrong_fraction.unwrap_or(0.0);
-        Ok(Trial { error, cost, next_cost: cost + grows, is_allowed: true })
-    };
-    let all: Vec<Vec<Trial>> = lines.iter().map(|line| line.steps.iter().map(&trial).collect()).collect::<Done<_>>()?;
-    for budget in BUDGETS {
-        let lengths: Vec<usize> = all.iter().map(Vec::len).collect();
-        let found = search(&lengths, budget, |line, step| Ok::<_, Box<dyn Error>>(Some(all[line][step])))?;
-        let good = all.iter().flatten().filter(|trial| trial.error <= budget);
-        let best = good.map(|trial| trial.cost).min_by(f64::total_cmp);
-        let cost = found.answer.map(|(line, step)| all[line][step].cost);
-        let verdict = if cost == best { "agrees" } else { "DIFFERS" };
-        let (tried, total) = (found.tried.len(), specs.len());
-        println!(
-            "advise {name}, {budget}: {verdict} ({cost:?}, exhaustive {best:?}); {tried} of {total} tried (at most a quarter)"
-        );
-    }
-    Ok(())
 }

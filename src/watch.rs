@@ -22,6 +22,18 @@ impl Watch for Unwatched {
     }
 }
 
+/// Another watch's interrupt without its progress: for work that is a step of something larger.
+#[derive(Clone, Copy)]
+pub struct Quiet<'w>(pub &'w dyn Watch);
+
+impl Watch for Quiet<'_> {
+    fn start(&self, _what: &str, _total: u64) {}
+    fn advance(&self, _units: u64) {}
+    fn interrupted(&self) -> bool {
+        self.0.interrupted()
+    }
+}
+
 /// The user asked to stop before the work was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("interrupted")]

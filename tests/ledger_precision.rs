@@ -156,7 +156,8 @@ impl<'e> Twin<'e> {
     fn reference_rounding(&self, receiver: &Receiver, reference: f64) -> f64 {
         let point = receiver.point_in_world;
         let site = self.lookup.views[0].site(point);
-        site.rounding(site.slope_per_texel(receiver.normal_in_world)) + 4.0 * UNIT * reference.abs().max(1.0)
+        site.slack(receiver.normal_in_world, site.slope_per_texel(receiver.normal_in_world), DVec2::ZERO)
+            + 4.0 * UNIT * reference.abs().max(1.0)
     }
 }
 

@@ -4,71 +4,12 @@
 
 mod support;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::DVec3;
 use gnomon::evaluate::Evaluation;
 use gnomon::receiver::Receiver;
-use gnomon::scene::Scene;
 use gnomon::technique::map::{Lookup, Settings};
-use std::fmt::Write;
-use support::scenes::scene_of_texts;
-use support::shot::{Shot, parsed};
-
-/// A box's eight corners and six sides, wound outwards.
-fn cuboid(model: &mut String, name: &str, centre: Vec3, half: Vec3, first: &mut u32) {
-    writeln!(model, "o {name}").unwrap();
-    for corner in 0..8 {
-        let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
-        let at = centre + half * Vec3::new(sign(0), sign(1), sign(2));
-        writeln!(model, "v {} {} {}", at.x, at.y, at.z).unwrap();
-    }
-    for side in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
-        let [a, b, c, d] = side.map(|corner| corner + *first);
-        writeln!(model, "f {a} {b} {c} {d}").unwrap();
-    }
-    *first += 8;
-}
-
-/// A lamp in a closed room with a small box in each of the six directions; the camera is in a corner.
-fn closed_room(corner: f32) -> Scene {
-    let (mut model, mut first) = (String::new(), 1);
-    cuboid(&mut model, "Room", Vec3::new(0.1, 0.2, -0.1), Vec3::splat(3.0), &mut first);
-    for (i, axis) in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z].into_iter().enumerate() {
-        cuboid(&mut model, &format!("Box{i}"), 1.2 * axis + Vec3::splat(0.13), Vec3::splat(0.21), &mut first);
-    }
-    let scene = format!(
-        "about = \"a closed room\"\nsize = [160, 120]\n\
-         [camera]\neye = [{0}, {0}, {0}]\ntarget = [0, 0, 0]\nfov_y_deg = 110\n\
-         [[mesh]]\nfile = \"model.obj\"\n\
-         [[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = [9, 9, 9]\n",
-        2.6 * corner
-    );
-    scene_of_texts(&scene, &model)
-}
-
-/// A sphere of facets around the light, which lights all of it; the camera inside looks at a corner of the cube.
-fn sphere() -> Scene {
-    const AROUND: usize = 48;
-    let mut model = String::from("o Sphere\n");
-    for ring in 0..=AROUND / 2 {
-        let height = std::f64::consts::TAU * ring as f64 / AROUND as f64;
-        for i in 0..AROUND {
-            let turn = std::f64::consts::TAU * i as f64 / AROUND as f64;
-            let at = 2.0 * DVec3::new(height.sin() * turn.cos(), height.cos(), height.sin() * turn.sin());
-            writeln!(model, "v {} {} {}", at.x, at.y, at.z).unwrap();
-        }
-    }
-    for ring in 0..AROUND / 2 {
-        for i in 0..AROUND {
-            let [a, b] = [i, (i + 1) % AROUND].map(|i| ring * AROUND + i + 1);
-            writeln!(model, "f {a} {b} {} {}", b + AROUND, a + AROUND).unwrap();
-        }
-    }
-    let scene = "about = \"a sphere around a lamp\"\nsize = [160, 120]\n\
-         [camera]\neye = [-0.9, -0.9, -0.9]\ntarget = [0, 0, 0]\nfov_y_deg = 120\n\
-         [[mesh]]\nfile = \"model.obj\"\n\
-         [[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = [9, 9, 9]\n";
-    scene_of_texts(scene, &model)
-}
+use support::models::{boxes_on_diagonals, closed_room, inside_a_sphere};
+use support::shot::{Shot, lit_at_texel_centre, lit_over_kernel, parsed};
 
 fn lookup(shot: &Shot<'_>, typed: &str) -> Lookup {
     let settings = Settings::of(&parsed(typed));
@@ -78,17 +19,6 @@ fn lookup(shot: &Shot<'_>, typed: &str) -> Lookup {
 
 fn receiver(shot: &Shot<'_>, pixel: u32) -> Receiver {
     shot.view.receivers.pixels[pixel as usize].expect("asked")
-}
-
-/// The truth at the place where a lookup's texel has its centre, on the receiver's plane.
-fn lit_at_texel_centre(shot: &Shot<'_>, lookup: &Lookup, receiver: &Receiver) -> bool {
-    let site = lookup.project(receiver.point_in_world).expect("inside a face");
-    let at = site.position_in_texels();
-    let [along_u, along_v] = site.texel_steps_m(receiver.normal_in_world);
-    let aside = at.floor() + 0.5 - at;
-    let point = receiver.point_in_world + aside.x * along_u + aside.y * along_v;
-    let segment = shot.question.light.segment_from(point, shot.view.scene.bounds().radius());
-    shot.view.casters.any_hit(&segment, Some(receiver.triangle)).is_none()
 }
 
 /// CU-3: every answer is the truth at the texel's centre, whichever of the six faces holds it.
@@ -124,7 +54,7 @@ fn in_a_closed_room_each_answer_is_the_truth_at_its_texels_centre() {
 /// CU-2: nothing shadows the inside of a sphere, on no seam and at no corner.
 #[test]
 fn inside_a_sphere_no_seam_darkens_anything() {
-    let scene = sphere();
+    let scene = inside_a_sphere();
     let shot = Shot::new(&scene, "lamp");
     let differing = |typed: &str| shot.evaluate(typed).verdict.pixels.differing;
     for typed in
@@ -151,28 +81,6 @@ fn inside_a_sphere_no_seam_darkens_anything() {
     }
 }
 
-/// The mean truth at the places on the receiver's plane where the texels of a kernel around it have their centres, as
-/// if its face had no sides; `None` in a corner of the room, where the plane ends.
-fn lit_over_kernel(shot: &Shot<'_>, lookup: &Lookup, receiver: &Receiver, taps: i32) -> Option<f64> {
-    let view = lookup.select(receiver.point_in_world).first;
-    let own = lookup.project(receiver.point_in_world).expect("inside a face").position_in_texels().floor();
-    let bounds = shot.view.scene.bounds();
-    let normal = receiver.normal_in_world;
-    let mut lit = 0.0;
-    for (row, column) in (0..taps).flat_map(|row| (0..taps).map(move |column| (row, column))) {
-        let aside = DVec2::new(column.into(), row.into()) - f64::from(taps / 2) + 0.5;
-        let ray = lookup.ray_through(view, own + aside, &bounds).expect("through the room");
-        let along = ray.to - ray.from;
-        let point = ray.from + along * (normal.dot(receiver.point_in_world - ray.from) / normal.dot(along));
-        if point.clamp(bounds.min, bounds.max).distance(point) > 1e-6 {
-            return None;
-        }
-        let segment = shot.question.light.segment_from(point, bounds.radius());
-        lit += f64::from(u8::from(shot.view.casters.any_hit(&segment, Some(receiver.triangle)).is_none()));
-    }
-    Some(lit / f64::from(taps * taps))
-}
-
 /// Mean distance from what the kernel should give, over pixels whose kernel reaches over a seam, and over others.
 fn mean_error_at_seams(shot: &Shot<'_>, lookup: &Lookup, evaluation: &Evaluation<'_>, taps: i32) -> [f64; 2] {
     let mut sums = [(0.0, 0.0); 2];
@@ -194,23 +102,7 @@ fn mean_error_at_seams(shot: &Shot<'_>, lookup: &Lookup, evaluation: &Evaluation
 /// CU-4: with taps that choose their own face a kernel at a seam is as good as elsewhere.
 #[test]
 fn a_kernel_across_a_seam_is_as_good_as_elsewhere() {
-    // Boxes on the diagonals, so that their shadows cross the seams.
-    let (mut model, mut first) = (String::new(), 1);
-    cuboid(&mut model, "Room", Vec3::new(0.8, -0.5, -0.6), Vec3::splat(3.0), &mut first);
-    let mut i = 0;
-    for a in [-1.0, 0.0, 1.0_f32] {
-        for b in [-1.0, 1.0_f32] {
-            for at in [Vec3::new(a, b, 1.0), Vec3::new(b, -1.0, a), Vec3::new(-1.0, a, b)] {
-                cuboid(&mut model, &format!("Box{i}"), at, Vec3::new(0.11, 0.13, 0.12), &mut first);
-                i += 1;
-            }
-        }
-    }
-    let scene = "about = \"boxes across seams\"\nsize = [240, 180]\n\
-         [camera]\neye = [2.7, -1.4, -2.6]\ntarget = [-2, 0.5, 1.5]\nfov_y_deg = 100\n\
-         [[mesh]]\nfile = \"model.obj\"\n\
-         [[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = [9, 9, 9]\n";
-    let scene = scene_of_texts(scene, &model);
+    let scene = boxes_on_diagonals();
     let shot = Shot::new(&scene, "lamp");
     let typed = |seam: &str| format!("map:projection=cube,size=48,filter=pcf-box7,{seam}");
     let lookup = lookup(&shot, &typed("seam=per-tap"));

@@ -1,6 +1,6 @@
-// Draws casters with a depth of its own: where u and v are warped but depth is not, and where casters before the near
-// plane must be drawn at it though the device always clips. The rasteriser's bias does not reach such depths, so it is
-// added here.
+// Casters with a depth of their own: where u and v are warped but depth is not, and where casters before the near plane
+// must be drawn at it though the device always clips. The rasteriser's bias does not reach such depths, so it is added
+// here. Another file puts the corners in their place.
 
 struct Caster {
     clip_from_world: mat4x4f,
@@ -16,6 +16,9 @@ struct Caster {
     // Whether what lies before the near plane is drawn at it.
     clamps: u32,
     padding: vec2u,
+    u_row: vec4f,
+    v_row: vec4f,
+    q_row: vec4f,
 }
 @group(0) @binding(0) var<uniform> caster: Caster;
 
@@ -23,15 +26,6 @@ struct Corner {
     @builtin(position) position: vec4f,
     // Depth times its divisor, and the divisor.
     @location(0) depth: vec2f,
-}
-
-@vertex
-fn vertex(@location(0) position_in_world: vec3f) -> Corner {
-    let point = vec4f(position_in_world, 1.0);
-    let clip = caster.clip_from_world * point;
-    // Any depth that is not clipped.
-    let position = vec4f(clip.xy, 0.5 * clip.w, clip.w);
-    return Corner(position, vec2f(dot(caster.depth_row, point), dot(caster.depth_q_row, point)));
 }
 
 @fragment

@@ -24,3 +24,21 @@ fn point_beside(view: View, point_in_world: vec3f, at: InMap, uv: vec2f) -> vec3
     return point_in_world
         + (move_uv.x * cross(around.v, normal) + move_uv.y * cross(normal, around.u)) / dot(normal, ray);
 }
+
+// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
+fn slack(
+    view: View, point_in_world: vec3f, normal_in_world: vec3f, in_map: InMap, slope: vec2f, reach_texels: vec2f,
+    texels: vec2f,
+) -> f32 {
+    let point = abs(vec4f(point_in_world, 1.0));
+    let reach_q = dot(abs(view.q_row), point);
+    let depth_q = dot(view.depth_q_row, vec4f(point_in_world, 1.0));
+    let depth = (dot(abs(view.depth_row), point) + abs(in_map.depth) * dot(abs(view.depth_q_row), point)) / depth_q;
+    let u = (dot(abs(view.u_row), point) + abs(in_map.uv.x) * reach_q) / in_map.q;
+    let v = (dot(abs(view.v_row), point) + abs(in_map.uv.y) * reach_q) / in_map.q;
+    return POSITION_ROUNDING * (depth + slope.x * texels.x * u + slope.y * texels.y * v);
+}
+
+fn nearest_texel(texel: vec2i, texels: vec2f) -> vec2i {
+    return clamp(texel, vec2i(0), vec2i(texels) - 1);
+}

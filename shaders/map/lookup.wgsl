@@ -1,6 +1,6 @@
 // One shadow-map lookup per receiver: select its view, place it there, guard, bias, filter. Twin of
-// src/technique/map/lookup.rs, which is the specification; a projection's file defines select_views, a filter's file
-// filter_visibility.
+// src/technique/map/lookup.rs, which is the specification; offset.wgsl says how far comparisons are moved, a projection's
+// file defines select_views, a filter's file filter_visibility.
 
 struct Lookup {
     // Homogeneous light: w = 0 with a vector towards a directional one.
@@ -10,11 +10,14 @@ struct Lookup {
     // SEAM_* and BORDER_*.
     seam: u32,
     border: u32,
-    closed_form_kernel: f32,
+    // CLEARANCE_*.
+    clearance: u32,
+    bias_kernel: f32,
     raster_slack_texels: f32,
     cap_texels: f32,
     normal_texels: f32,
     depth_m: f32,
+    depth_texels: f32,
     // Step of a fixed-point format, 0 for float.
     fixed_step: f32,
     // Step of a float format relative to the depth, 0 for fixed point.
@@ -25,6 +28,7 @@ struct Lookup {
     turns: u32,
     seed: u32,
     padding: u32,
+    padding_2: vec2u,
 }
 @group(0) @binding(2) var<uniform> lookup: Lookup;
 @group(0) @binding(3) var stored_depths: texture_depth_2d_array;
@@ -41,6 +45,9 @@ struct Placed {
     normal_in_world: vec3f,
     position_in_texels: vec2f,
     reference: f32,
+    // By how much the reference changes from one texel to the next, and by how much at most.
+    reference_per_texel: vec2f,
+    reference_reach: f32,
 }
 
 // The receiver whose lookup is under way: filters hand taps by texel only.
@@ -73,7 +80,7 @@ fn visibility_in(view: u32, point_in_world: vec3f, normal_in_world: vec3f) -> f3
     if at.q <= 0.0 || !(is_inside || lookup.border == BORDER_CLAMP_EDGE) {
         return border_visibility();
     }
-    own = placed(view, moved, normal_in_world, vec2f(lookup.closed_form_kernel));
+    own = placed(view, moved, normal_in_world, vec2f(own_reach_texels()));
     return filter_visibility(own.position_in_texels, own.reference);
 }
 
@@ -83,34 +90,22 @@ fn placed(view: u32, moved: vec3f, normal_in_world: vec3f, reach_texels: vec2f) 
     if lookup.border == BORDER_CLAMP_EDGE {
         at.depth = clamp(at.depth, 0.0, 1.0);
     }
+    let around = gradients(views[view], moved, at);
     let bias = bias_depth(views[view], moved, normal_in_world, at, reach_texels);
     let reference = at.depth - views[view].depth_sign * bias;
-    return Placed(view, moved, normal_in_world, at.uv * lookup.texels, reference);
+    let follows_plane = lookup.clearance == CLEARANCE_RECEIVER_PLANE;
+    let per_texel = select(vec2f(0.0), depth_per_texel(around, normal_in_world, lookup.texels), follows_plane);
+    return Placed(view, moved, normal_in_world, at.uv * lookup.texels, reference, per_texel, cap_depth(around));
 }
 
-fn moved_along_normal(view: View, point_in_world: vec3f, normal_in_world: vec3f) -> vec3f {
-    if lookup.normal_texels == 0.0 {
-        return point_in_world;
+// The reference of one texel of a receiver's view, given that of the receiver's own place.
+fn reference_at(placed: Placed, reference: f32, texel: vec2i) -> f32 {
+    if all(placed.reference_per_texel == vec2f(0.0)) {
+        return reference;
     }
-    let width = texel_m(gradients(view, point_in_world, project(view, point_in_world)), lookup.texels);
-    let towards_light = normalize(lookup.light.xyz - point_in_world * lookup.light.w);
-    let sine = length(cross(normal_in_world, towards_light));
-    return point_in_world + normal_in_world * (lookup.normal_texels * max(width.x, width.y) * sine);
-}
-
-// How far the comparison is moved towards the light, in units of depth.
-fn bias_depth(view: View, point_in_world: vec3f, normal_in_world: vec3f, at: InMap, reach_texels: vec2f) -> f32 {
-    let around = gradients(view, point_in_world, at);
-    let along_light = lookup.depth_m / metres_per_depth(around);
-    if lookup.closed_form_kernel == 0.0 {
-        return along_light;
-    }
-    let slope = slope_per_texel(around, normal_in_world, lookup.texels);
-    let sufficient = dot(reach_texels + lookup.raster_slack_texels, slope)
-        + rounding(view, point_in_world, at, slope, lookup.texels)
-        + 4.0 * (lookup.fixed_step + lookup.float_step * abs(at.depth));
-    let width = texel_m(around, lookup.texels);
-    return along_light + min(sufficient, lookup.cap_texels * max(width.x, width.y) / metres_per_depth(around));
+    let away = vec2f(texel) + 0.5 - placed.position_in_texels;
+    let change = clamp(dot(placed.reference_per_texel, away), -placed.reference_reach, placed.reference_reach);
+    return clamp(reference + change, 0.0, 1.0);
 }
 
 // Whether the receiver under way is lit by a texel of its view, whose reference depth is given. Equality is lit.
@@ -121,19 +116,21 @@ fn is_lit(reference: f32, texel: vec2i) -> bool {
     if lookup.seam == SEAM_PER_TAP {
         let across = texel_across(texel);
         if across.is_found {
-            return compares_lit(across.placed.view, across.placed.reference, across.texel);
+            let placed = across.placed;
+            return compares_lit(placed.view, reference_at(placed, placed.reference, across.texel), across.texel);
         }
     }
     if lookup.seam != SEAM_PER_TAP || lookup.border == BORDER_CLAMP_EDGE {
-        return compares_lit(own.view, reference, clamp(texel, vec2i(0), vec2i(lookup.texels) - 1));
+        let nearest = nearest_texel(texel, lookup.texels);
+        return compares_lit(own.view, reference_at(own, reference, nearest), nearest);
     }
     return lookup.border != BORDER_SHADOW;
 }
 
 // The reference depth of the receiver under way, with a bias for as far as the texel is where filters ask for that.
 fn reference_for(reference: f32, texel: vec2i) -> f32 {
-    if lookup.reaches_by_tap == 0u || lookup.closed_form_kernel == 0.0 {
-        return reference;
+    if lookup.reaches_by_tap == 0u || lookup.clearance != CLEARANCE_CLOSED_FORM {
+        return reference_at(own, reference, texel);
     }
     let reach_texels = max(abs(vec2f(texel) + 0.5 - own.position_in_texels), vec2f(0.5));
     return placed(own.view, own.point_in_world, own.normal_in_world, reach_texels).reference;
@@ -157,7 +154,8 @@ fn texel_across(texel: vec2i) -> Across {
     if view == own.view || found.q <= 0.0 || seen.q <= 0.0 || !is_in_view(across) {
         return Across(false, own, texel);
     }
-    let reach_texels = abs(vec2f(across) + 0.5 - seen.uv * lookup.texels);
+    let away = abs(vec2f(across) + 0.5 - seen.uv * lookup.texels);
+    let reach_texels = select(away, vec2f(0.0), lookup.clearance == CLEARANCE_RECEIVER_PLANE);
     return Across(true, placed(view, own.point_in_world, own.normal_in_world, reach_texels), across);
 }
 
@@ -166,7 +164,7 @@ fn border_visibility() -> f32 {
 }
 
 fn is_in_view(texel: vec2i) -> bool {
-    return all(texel >= vec2i(0)) && all(texel < vec2i(lookup.texels));
+    return all(texel == nearest_texel(texel, lookup.texels));
 }
 
 fn compares_lit(view: u32, reference: f32, texel: vec2i) -> bool {

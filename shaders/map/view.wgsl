@@ -1,5 +1,6 @@
 // One view of a map, and what follows from the gradients of its coordinates. Twin of
-// src/technique/map/projection/{view,site}.rs; a layout file defines project, gradients and point_beside.
+// src/technique/map/projection/{view,site}.rs; a layout file defines project, gradients,
+// point_beside, slack and nearest_texel.
 
 struct View {
     u_row: vec4f,
@@ -13,7 +14,9 @@ struct View {
     depth_sign: f32,
     // How fast it is blended in before the projection would select it, per metre; 0 where it is not.
     blend_per_m: f32,
-    padding: vec2u,
+    // Largest angle that a drawn edge spans as seen from the light; 0 where edges are drawn as they are.
+    edge_rad: f32,
+    padding: u32,
 }
 
 // Where a world point lies in a view.
@@ -56,23 +59,17 @@ fn metres_per_depth(at: Gradients) -> f32 {
     return length(ray) / abs(dot(at.depth, ray));
 }
 
-// Change of depth from one texel to the next along u and along v on a plane, without sign.
-fn slope_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+// Change of depth from one texel to the next along u and along v on a plane.
+fn depth_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
     let volume = dot(normal_in_world, cross(at.u, at.v)) * texels;
-    let change =
-        abs(vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u))));
+    let change = vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u)));
     // A plane that the light sees edge-on has no volume.
-    let edge_on = abs(volume) * STEEPEST <= change;
-    return select(change / abs(volume), vec2f(STEEPEST), edge_on);
+    let edge_on = abs(volume) * STEEPEST <= abs(change);
+    return select(change / volume, vec2f(STEEPEST), edge_on);
 }
 
-// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
-fn rounding(view: View, point_in_world: vec3f, in_map: InMap, slope: vec2f, texels: vec2f) -> f32 {
-    let point = abs(vec4f(point_in_world, 1.0));
-    let reach_q = dot(abs(view.q_row), point);
-    let depth_q = dot(view.depth_q_row, vec4f(point_in_world, 1.0));
-    let depth = (dot(abs(view.depth_row), point) + abs(in_map.depth) * dot(abs(view.depth_q_row), point)) / depth_q;
-    let u = (dot(abs(view.u_row), point) + abs(in_map.uv.x) * reach_q) / in_map.q;
-    let v = (dot(abs(view.v_row), point) + abs(in_map.uv.y) * reach_q) / in_map.q;
-    return POSITION_ROUNDING * (depth + slope.x * texels.x * u + slope.y * texels.y * v);
+// How far along its normal a plane must move for its depth to change by what it changes from one texel to the next.
+fn normal_offset_per_texel_m(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+    let change = vec2f(dot(normal_in_world, cross(at.depth, at.v)), dot(normal_in_world, cross(at.u, at.depth)));
+    return abs(change) / (abs(dot(at.depth, cross(at.u, at.v))) * texels);
 }

@@ -5,19 +5,22 @@ use super::command::Subject;
 use super::context::{load, only_light, open_gpu};
 use super::exit;
 use super::terminal::{Terminal, say, say_or_end};
-use crate::evaluate::{Effort, EvaluateError, Outcome, Question, View, evaluate, jittered};
+use crate::evaluate::{Effort, EvaluateError, Outcome, Question, View, evaluate, jittered, time_evaluations};
 use crate::gpu::Gpu;
 use crate::scene::{Light, Scene};
 use crate::technique::{Cost, Spec, registry};
-use crate::trade::advise::{Line, Search, Trial, knob, lines, search};
+use crate::trade::advise::{Line, Search, Trial, lines, search};
 use crate::trade::specs_of_grids;
-use crate::watch::Watch;
+use crate::watch::{Quiet, Watch as _};
 use anyhow::{Context, ensure};
 use std::collections::BTreeMap;
 
 /// What is searched unless the user types grids: for maps the knobs that users turn first, and every way to count volumes.
-const GRIDS: [&str; 2] = [
+const GRIDS: [&str; 5] = [
     "map:size=128..8192,fit=scene|receivers,filter=nearest|pcf-box3|pcf-box5,bias=closed-form|slope",
+    "map:projection=cube,size=128..4096,filter=nearest|pcf-box3|pcf-box5",
+    "map:projection=cascaded,size=128..4096,filter=nearest|pcf-box3|pcf-box5",
+    "map:projection=light-space-perspective|trapezoidal,size=128..8192,filter=nearest|pcf-box3|pcf-box5",
     "volume:count=z-pass|z-fail|mixed|zp-plus",
 ];
 /// An error so many times the budget at the first texel phase is not brought within it by the others.
@@ -72,8 +75,15 @@ fn candidates(grids: &[String]) -> anyhow::Result<Vec<Spec>> {
 fn applicable(specs: Vec<Spec>, scene: &Scene, light: &Light, gpu: &Gpu) -> (Vec<Spec>, Vec<String>) {
     let mut reasons: Vec<(String, &'static str, usize)> = Vec::new();
     let applies = |spec: &Spec| {
-        let Err(why) = spec.technique().supports(spec, scene, light, gpu) else { return true };
-        let (why, family) = (why.to_string(), spec.technique().id());
+        let supports = |spec: &Spec| spec.technique().supports(spec, scene, light, gpu);
+        let family = spec.technique().id();
+        let is_cube = family == "map" && spec.choice("projection").0 == "cube";
+        let fits_in_one = || spec.with("projection", "single").is_ok_and(|single| supports(&single).is_ok());
+        let why = match supports(spec) {
+            Ok(()) if is_cube && fits_in_one() => "one frustum holds all receivers: no need for a cube".to_owned(),
+            Ok(()) => return true,
+            Err(why) => why.to_string(),
+        };
         match reasons.iter_mut().find(|(known, of, _)| (known, *of) == (&why, family)) {
             Some((.., count)) => *count += 1,
             None => reasons.push((why, family, 1)),
@@ -96,28 +106,22 @@ struct Measured {
 }
 
 impl Measured {
-    /// On a software adapter counted work ranks, on a real one time does.
-    fn ranked_cost(&self) -> f64 {
-        let ms = self.cost.gpu_ms.map(|time| time.median);
-        match (self.cost.work(), ms) {
-            (Some(work), _) if self.is_software || ms.is_none() => work as f64,
-            (_, Some(ms)) => ms,
-            _ => self.cost.bytes as f64,
-        }
+    fn ms(&self) -> Option<f64> {
+        self.cost.gpu_ms.map(|time| time.median)
     }
 
+    /// On a software adapter counted work ranks, on a real one time does.
     fn trial(&self, spec: &Spec, max_ms: Option<f64>) -> Trial {
-        /// Words of the least texel there is, 16 bits: what doubling a map's side adds to the counted work at least.
-        const WORDS_PER_TEXEL: f64 = 0.5;
-        let cost = self.ranked_cost();
-        let grows = knob(spec).map_or(0.0, |name| 3.0 * (spec.integer(name) as f64).powi(2) * WORDS_PER_TEXEL);
-        let ms = self.cost.gpu_ms.map(|time| time.median);
-        Trial {
-            error: self.mean,
-            cost,
-            next_cost: if self.is_software { cost + grows } else { cost },
-            is_allowed: max_ms.is_none_or(|limit| ms.is_some_and(|ms| ms <= limit)),
-        }
+        let by_work = Trial::by_work(spec, self.mean, &self.cost);
+        let trial = match (by_work, self.ms()) {
+            (Some(by_work), ms) if self.is_software || ms.is_none() => by_work,
+            (_, ms) => {
+                let cost = ms.unwrap_or(self.cost.bytes as f64);
+                Trial { error: self.mean, cost, next_cost: cost, least_cost: 0.0, is_allowed: true }
+            }
+        };
+        let is_allowed = max_ms.is_none_or(|limit| self.ms().is_some_and(|ms| ms <= limit));
+        Trial { is_allowed, ..trial }
     }
 }
 
@@ -134,9 +138,11 @@ impl Adviser<'_> {
     fn measure(&self, spec: &Spec) -> anyhow::Result<Option<Measured>> {
         let is_software = self.view.gpu.adapter().is_software;
         let is_timed = self.args.max_ms.is_some() || !is_software;
-        let effort = if is_timed { Effort { explains: false, ..Effort::FULL } } else { Effort::VERDICT };
         let quiet = Quiet(self.terminal);
-        let measured = evaluate(self.view, self.question, spec, effort, &quiet).and_then(|evaluation| {
+        let measured = evaluate(self.view, self.question, spec, Effort::VERDICT, &quiet).and_then(|mut evaluation| {
+            if is_timed {
+                time_evaluations(self.view, &mut [&mut evaluation], &quiet)?;
+            }
             let first = evaluation.verdict.error.wrong_fraction.unwrap_or(0.0);
             let phases = if first > HOPELESS * self.args.max_wrong { 0 } else { self.args.phases };
             let mut errors: Vec<f64> =
@@ -146,7 +152,7 @@ impl Adviser<'_> {
             }
             let mean = errors.iter().sum::<f64>() / errors.len() as f64;
             let worst = errors.iter().copied().fold(0.0, f64::max);
-            Ok(Measured { mean, worst, phases: errors.len(), cost: evaluation.cost.clone(), is_software })
+            Ok(Measured { mean, worst, phases: errors.len(), cost: evaluation.cost, is_software })
         });
         match measured {
             Ok(measured) => Ok(Some(measured)),
@@ -166,17 +172,6 @@ impl Adviser<'_> {
         let named =
             causes.iter().take(NAMED_CAUSES).map(|(cause, pixels)| format!("{} {:.0} %", cause.name(), share(*pixels)));
         Ok(named.collect::<Vec<_>>().join(", "))
-    }
-}
-
-/// The terminal's interrupt without its progress.
-struct Quiet<'t>(&'t Terminal);
-
-impl Watch for Quiet<'_> {
-    fn start(&self, _what: &str, _total: u64) {}
-    fn advance(&self, _units: u64) {}
-    fn interrupted(&self) -> bool {
-        self.0.interrupted()
     }
 }
 
@@ -217,7 +212,7 @@ impl Told<'_> {
             return Ok(exit::BUDGET);
         };
         self.say_one("answer", answer, false)?;
-        let cost = self.measured[&answer].ranked_cost();
+        let cost = tried.iter().find(|(line, step, _)| (*line, *step) == answer).map_or(0.0, |(.., trial)| trial.cost);
         let cheaper = tried.iter().filter(|(.., trial)| trial.cost < cost).max_by(|a, b| a.2.cost.total_cmp(&b.2.cost));
         match cheaper {
             Some((line, step, _)) => self.say_one("next cheaper", (*line, *step), true)?,

@@ -1,5 +1,6 @@
 //! `gnomon check`: every technique on every light of every scene, as a table and, with --out, as files.
 
+use super::answered::Answered;
 use super::args::CheckArgs;
 use super::command::Subject;
 use super::context::{ask, load, mitsuba_for, open_gpu};
@@ -8,17 +9,22 @@ use super::output::OutFolder;
 use super::tasks::{Task, tasks};
 use super::terminal::{Terminal, complain, say_or_end, width};
 use super::{exit, pictures, report};
-use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, flips, jittered};
+use crate::evaluate::{Evaluation, Question, View, time_evaluations};
 use crate::gpu::Gpu;
 use crate::report::export::{EXPORTERS, Exporter};
 use crate::report::html::Imagery;
-use crate::report::model::{Jitter, Motion, Report, Run, Status};
+use crate::report::model::{Report, Run, Status};
 use crate::report::table::table;
 use crate::scene::Scene;
 use crate::suggest::hint;
-use crate::technique::{Spec, TechniqueError};
+use crate::technique::Spec;
 use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
+
+/// So many answers at most are kept to be timed in turn: what is done should soon be on the disk.
+const COMPARED: usize = 16;
+/// And so many bytes.
+const COMPARED_BYTES: usize = 1 << 30;
 
 /// The runs so far, and where their pictures go.
 struct Session<'a> {
@@ -70,62 +76,51 @@ impl Session<'_> {
             let question = ask(&view, light, oracle, mitsuba.as_mut(), self.terminal)?;
             self.notes.extend(report::mitsuba_line(&question).map(|line| format!("{} / {line}", scene.name)));
             self.pixels.ask(&view, &question)?;
-            for task in of_light {
-                let subject =
-                    Subject { scene: path, light: &task.light.name, spec: &task.spec, size: scene.image_size };
-                let run = self.check_task(&view, &question, task, &subject)?;
-                self.runs.push(run);
-                self.deeper.push(subject.diagnose());
-            }
+            let mut compared = Vec::new();
+            let ended = of_light.iter().try_for_each(|task| {
+                compared.push(Answered::new(&view, &question, task, self.args, self.terminal)?);
+                let bytes: usize = compared.iter().map(Answered::bytes).sum();
+                if compared.len() == COMPARED || bytes > COMPARED_BYTES {
+                    self.add(path, &view, &question, std::mem::take(&mut compared))?;
+                }
+                anyhow::Ok(())
+            });
+            // What is done is reported even when the rest was not to be.
+            self.add(path, &view, &question, compared)?;
+            ended?;
         }
         Ok(())
     }
 
-    /// One run, its pictures written. What a technique cannot do, and what goes wrong with it, is a row of the report.
-    fn check_task(
+    /// Times some answers in turn, and adds their runs to the report and the pictures to the folder.
+    fn add(
         &mut self,
+        path: &Path,
         view: &View<'_>,
         question: &Question<'_>,
-        task: &Task<'_>,
-        subject: &Subject<'_>,
-    ) -> anyhow::Result<Run> {
-        let asked = report::question(
-            view.scene,
-            task.light,
-            &task.spec,
-            subject.check(self.args.jitter, self.args.motion) + self.args.oracle.option(),
-        );
-        let outcome = evaluate(view, question, &task.spec, Effort::FULL, self.terminal).and_then(|evaluation| {
-            let phases = jittered(view, question, &task.spec, self.args.jitter, self.terminal)?;
-            let moved = flips(view.gpu, view.scene, task.light, &task.spec, self.args.motion, self.terminal)?;
-            Ok((evaluation, phases, moved))
-        });
-        let (evaluation, phases, moved) = match outcome {
-            Ok(outcome) => outcome,
-            Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
-                self.pixels.add(question, None)?;
-                return Ok(Run::unsupported(asked, why.to_string()));
-            }
-            Err(error @ (EvaluateError::Interrupted(_) | EvaluateError::Technique(TechniqueError::Interrupted(_)))) => {
-                return Err(error.into());
-            }
-            Err(error) => {
-                self.pixels.add(question, None)?;
-                return Ok(Run::failed(asked, error.to_string()));
-            }
-        };
-        let fractions: Vec<f64> = phases.iter().map(|(_, fraction)| *fraction).collect();
-        let mut run = Run::judged(asked, &evaluation.verdict).explained_by(&evaluation.ledger);
-        run.cost = Some(evaluation.cost.clone());
-        run.truth = Some(report::truth_source(question));
-        run.jitter = Jitter::of(&fractions);
-        run.motion = Motion::of(&moved.of_camera, &moved.of_light);
-        run.budget = task.limits.outcome(&evaluation.verdict, run.jitter);
-        self.pixels.add(question, Some((&evaluation, &subject.explain_some_pixel())))?;
-        if let Some(out) = &self.out {
-            pictures::write_run(out, self.runs.len(), view, question, &run, &evaluation)?;
+        mut compared: Vec<Answered<'_, '_>>,
+    ) -> anyhow::Result<()> {
+        let mut evaluations: Vec<&mut Evaluation<'_>> = compared.iter_mut().filter_map(Answered::evaluation).collect();
+        match time_evaluations(view, &mut evaluations, self.terminal) {
+            Err(error) if !error.is_interrupt() => complain(&format!("warning: there are no times: {error}")),
+            _ => {}
         }
-        Ok(run)
+        for answered in compared {
+            let task = answered.task;
+            let size = view.scene.image_size;
+            let subject = Subject { scene: path, light: &task.light.name, spec: &task.spec, size };
+            let options = subject.check(self.args.jitter, self.args.motion) + self.args.oracle.option();
+            let run = answered.run(report::question(view.scene, task.light, &task.spec, options), question);
+            let evaluation = answered.outcome.as_ref().ok().map(|answer| &answer.evaluation);
+            let explain = subject.explain_some_pixel();
+            self.pixels.add(question, evaluation.map(|evaluation| (evaluation, explain.as_str())))?;
+            if let (Some(out), Some(evaluation)) = (&self.out, evaluation) {
+                pictures::write_run(out, self.runs.len(), view, question, &run, evaluation)?;
+            }
+            self.runs.push(run);
+            self.deeper.push(subject.diagnose());
+        }
+        Ok(())
     }
 
     fn verdict_code(&self) -> u8 {

@@ -11,9 +11,6 @@ use crate::evaluate::{
 };
 use crate::technique::{Spec, TechniqueError};
 
-/// Timed runs of the configuration as it is, like those of a trial.
-const EFFORT: Effort = Effort { timed_runs: 1, explains: true };
-
 pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8> {
     let spec = Spec::parse(&args.technique)?;
     let scene = load(&args.scene.scene, args.scene.size)?;
@@ -24,7 +21,7 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
         let subject = |spec| Subject { scene: &args.scene.scene, light: &light.name, spec, size: scene.image_size };
         let question = view.ask(light, terminal)?;
         say(&format!("{}, light '{}', {}", scene.name, light.name, spec.short()));
-        let evaluation = match evaluate(&view, &question, &spec, EFFORT, terminal) {
+        let evaluation = match evaluate(&view, &question, &spec, Effort::CAUSES, terminal) {
             Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => {
                 say(&format!("  not applicable: {why}\n"));
                 continue;
@@ -100,8 +97,8 @@ fn effect(cause: Cause, before: &Outcome, after: &Outcome) -> String {
     }
     parts.push(format!("all wrong {} → {} px", before.wrong, after.wrong));
     let growth = |old: f64, new: f64| 100.0 * (new / old - 1.0);
-    if let (Some(old), Some(new)) = (before.cost.gpu_ms, after.cost.gpu_ms) {
-        parts.push(format!("GPU time {:+.0} %", growth(old.median, new.median)));
+    if let Some(ratio) = after.ms_ratio {
+        parts.push(format!("GPU time {:+.0} %", growth(1.0, ratio)));
     }
     parts.push(format!("memory {:+.0} %", growth(before.cost.bytes as f64, after.cost.bytes as f64)));
     parts.join(", ")

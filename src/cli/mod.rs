@@ -2,6 +2,7 @@
 //! `anyhow`. A command that finds something prints the command for the next step, too.
 
 mod advise;
+mod answered;
 mod args;
 mod bench_published;
 mod check;

@@ -1,11 +1,12 @@
 //! What is wrong with a technique's shadows, and which knob helps: every fix is tried, its effect and its side effects
 //! are measured.
 
+use super::timing::{TIMED_ROUNDS, time_in_turn};
 use super::{Effort, EvaluateError, Evaluation, Question, View, evaluate};
 use crate::cause::Cause;
-use crate::technique::{Cost, Spec, SpecError};
+use crate::technique::{Cost, Prepared, Spec, SpecError};
 use crate::verdict::Ledger;
-use crate::watch::{Interrupted, Watch};
+use crate::watch::{Interrupted, Quiet, Watch};
 use std::collections::BTreeMap;
 
 /// Remedies tried per cause.
@@ -15,8 +16,6 @@ const NAMED_PIXELS: usize = 3;
 /// The biases that a search compares, and the rasteriser's slope factor with each.
 const BIASES: [(&str, &str); 6] =
     [("none", "auto"), ("slope", "0.5"), ("slope", "1"), ("slope", "2"), ("slope", "4"), ("closed-form", "auto")];
-/// Timed runs of a trial: enough for a ratio beside the counted work.
-const TRIAL: Effort = Effort { timed_runs: 1, explains: true };
 
 /// What one evaluation came to.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +26,9 @@ pub struct Outcome {
     pub wrong: u64,
     /// What it cost.
     pub cost: Cost,
+    /// Its GPU time over that of the configuration it is to mend, both timed in turn; `None` without timestamps, and
+    /// where nobody asked.
+    pub ms_ratio: Option<f64>,
 }
 
 /// One cause that is present, and what was tried against it.
@@ -60,7 +62,8 @@ impl Outcome {
     #[must_use]
     pub fn of(evaluation: &Evaluation<'_>) -> Self {
         let wrong_by_cause = by_cause(&evaluation.ledger);
-        Self { wrong_by_cause, wrong: evaluation.verdict.pixels.wrong, cost: evaluation.cost.clone() }
+        let (wrong, cost) = (evaluation.verdict.pixels.wrong, evaluation.cost.clone());
+        Self { wrong_by_cause, wrong, cost, ms_ratio: None }
     }
 
     /// Wrong pixels of one cause.
@@ -89,18 +92,25 @@ impl<'t> Trials<'t> {
         Self { view, question, known: Vec::new() }
     }
 
-    /// What a specification comes to; a failure in words.
+    /// What a specification comes to, timed in turn with what it is to mend; a failure in words.
     fn outcome(
         &mut self,
         spec: &Spec,
-        effort: Effort,
+        beside: Option<&dyn Prepared>,
         watch: &dyn Watch,
     ) -> Result<Result<Outcome, String>, Interrupted> {
         if let Some((_, outcome)) = self.known.iter().find(|(known, _)| known == spec) {
             return Ok(outcome.clone());
         }
-        let outcome = match evaluate(self.view, self.question, spec, effort, watch) {
-            Ok(evaluation) => Ok(Outcome::of(&evaluation)),
+        let tried = evaluate(self.view, self.question, spec, Effort::CAUSES, watch).and_then(|evaluation| {
+            let outcome = Outcome::of(&evaluation);
+            let Some(beside) = beside else { return Ok(outcome) };
+            let times = time_in_turn(self.view, &[beside, evaluation.prepared.as_ref()], TIMED_ROUNDS, &Quiet(watch))?;
+            let ms: Option<Vec<f64>> = times.iter().map(|times| Some(times.gpu_ms?.median)).collect();
+            Ok(Outcome { ms_ratio: ms.map(|ms| ms[1] / ms[0]), ..outcome })
+        });
+        let outcome = match tried {
+            Ok(outcome) => Ok(outcome),
             Err(EvaluateError::Interrupted(interrupted)) => return Err(interrupted),
             Err(error) => Err(error.to_string()),
         };
@@ -128,7 +138,7 @@ pub fn diagnose(
     for (cause, pixels) in present {
         let mut tried = Vec::new();
         for remedy in remedies(cause) {
-            let outcome = trials.outcome(&remedy, TRIAL, watch)?;
+            let outcome = trials.outcome(&remedy, Some(evaluation.prepared.as_ref()), watch)?;
             tried.push((remedy, outcome));
             watch.advance(1);
         }
@@ -169,7 +179,7 @@ pub fn search_bias(
     let mut verdict = BiasVerdict { free_of_both: None, tried: Vec::new() };
     for candidate in candidates {
         watch.advance(1);
-        let Ok(outcome) = trials.outcome(&candidate, Effort::CAUSES, watch)? else { continue };
+        let Ok(outcome) = trials.outcome(&candidate, None, watch)? else { continue };
         let self_shadow = outcome.of_cause(Cause::Acne) + outcome.of_cause(Cause::Curvature);
         let detached = outcome.of_cause(Cause::PeterPanning);
         if self_shadow == 0 && detached == 0 && verdict.free_of_both.is_none() {

@@ -19,8 +19,17 @@ const FAULTS: &[Fault] = &[
     ("shared/receiver.wgsl", "return thread.x +", "return thread.x / 2u +", "map"),
     ("map/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", "map"),
     ("map/caster_depth.wgsl", "corner.depth.x / corner.depth.y", "corner.depth.y - corner.depth.x", IN_FRAGMENTS),
+    ("map/caster_rows.wgsl", "vec4f(clip.xy, ", "vec4f(clip.yx, ", IN_FRAGMENTS),
+    ("map/caster_paraboloid.wgsl", "seen.xy / (RIM", "seen.yx / (RIM", PARABOLOID),
+    ("map/paraboloid.wgsl", "q = distance + seen.z", "q = distance - seen.z", PARABOLOID),
+    (
+        "map/projection/dual_paraboloid.wgsl",
+        "one_view(select(0u, 1u, before < 0.0 && arrayLength(&views) > 1u))",
+        "Shares(0u, 0u, sqrt(-1.0 - before * before))",
+        PARABOLOID,
+    ),
     ("map/gather.wgsl", "texels[index].xy", "texels[index].xy + 1u", "map"),
-    ("map/view.wgsl", "change / abs(volume)", "0.9 * change / abs(volume)", "map"),
+    ("map/view.wgsl", "change / volume", "0.9 * change / volume", "map"),
     ("map/homogeneous.wgsl", "vec2f(dot(view.u_row, point), dot(view.v_row, point))", "vec2f(q)", "map"),
     (
         "map/projection/one_view.wgsl",
@@ -31,6 +40,8 @@ const FAULTS: &[Fault] = &[
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
     ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
+    ("map/offset.wgsl", "offset.x + offset.y", "0.0", "map:size=300,bias=normal"),
+    ("map/lookup.wgsl", "vec2f(texel) + 0.5 - placed", "vec2f(texel) - 0.5 - placed", "map:bias=receiver-plane"),
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
     ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),
@@ -91,6 +102,7 @@ const FAULTS: &[Fault] = &[
 ];
 const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
+const PARABOLOID: &str = "map:projection=dual-paraboloid";
 const PROJECTED: &str = "projective-texture";
 const ZP_PLUS: &str = "volume:count=zp-plus";
 

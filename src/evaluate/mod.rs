@@ -3,7 +3,6 @@
 //! A [`View`] holds what does not depend on the light, a [`Question`] what does not depend on the technique; both are
 //! made once and shared by every evaluation.
 
-mod cost;
 mod diagnose;
 #[cfg(test)]
 mod faults;
@@ -13,14 +12,15 @@ mod lighting_tests;
 mod motion;
 mod occluders;
 mod profile;
+mod timing;
 mod view;
 
-pub use cost::time_in_turn;
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
 pub use motion::{Flips, STEP_PX, flips};
 pub use occluders::occluders;
 pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
+pub use timing::{TIMED_ROUNDS, Times, time_evaluations, time_in_turn};
 pub use view::{Oracle, Question, TruthStore, View};
 
 use crate::cause::Replay;
@@ -29,23 +29,20 @@ use crate::scene::Light;
 use crate::technique::{Cost, Prepared, Spec, TechniqueError};
 use crate::verdict::{Ledger, LedgerError, Verdict, VerdictError, judge, ledger, wrong_above};
 use crate::watch::{Interrupted, Watch};
+use std::time::Instant;
 
 /// How thorough an evaluation is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Timed runs after the warm-up; 0 runs once and measures no time.
-    pub timed_runs: u32,
     /// Whether errors are booked to causes.
     pub explains: bool,
 }
 
 impl Effort {
-    /// What `check` does.
-    pub const FULL: Self = Self { timed_runs: 3, explains: true };
     /// Only the verdict.
-    pub const VERDICT: Self = Self { timed_runs: 0, explains: false };
-    /// The verdict and its causes, without a warm-up.
-    pub const CAUSES: Self = Self { timed_runs: 0, explains: true };
+    pub const VERDICT: Self = Self { explains: false };
+    /// The verdict and its causes.
+    pub const CAUSES: Self = Self { explains: true };
 }
 
 /// A technique evaluated for one light of one view.
@@ -60,7 +57,7 @@ pub struct Evaluation<'v> {
     pub replay: Replay,
     /// Why it is wrong; empty without [`Effort::explains`].
     pub ledger: Ledger,
-    /// What it cost.
+    /// What it cost; without times until it is timed ([`time_evaluations`]).
     pub cost: Cost,
 }
 
@@ -107,10 +104,13 @@ pub fn evaluate<'v>(
     watch: &dyn Watch,
 ) -> Result<Evaluation<'v>, EvaluateError> {
     let job = view.job(question.light, &question.classes);
-    let (prepared, prepare_ms) = cost::prepared(|| spec.technique().prepare(spec, job))?;
-    let mut measured = cost::measure(prepared.as_ref(), effort.timed_runs, watch)?;
-    measured.cost.prepare_ms = Some(prepare_ms);
-    let verdict = judge(&question.classes, &question.truth.mask, &measured.mask, wrong_above(question.light))?;
+    let start = Instant::now();
+    let prepared = spec.technique().prepare(spec, job)?;
+    let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
+    let answer = prepared.run()?;
+    let cost = Cost::counted(&answer.passes, prepared.bytes(), prepare_ms);
+    let mask = answer.mask;
+    let verdict = judge(&question.classes, &question.truth.mask, &mask, wrong_above(question.light))?;
     if watch.interrupted() {
         return Err(Interrupted.into());
     }
@@ -118,14 +118,13 @@ pub fn evaluate<'v>(
         let is_off = |(_, error): &(usize, &Option<f64>)| error.is_some_and(|error| error != 0.0);
         let pixels: Vec<u32> =
             verdict.signed_error.iter().enumerate().filter(is_off).map(|(pixel, _)| pixel as u32).collect();
-        let replay =
-            replay_from_truth(prepared.as_ref(), spec, question.light, &question.truth.mask, &measured.mask, &pixels)?;
-        let ledger = ledger(&verdict, &question.truth.mask, &measured.mask, &replay)?;
+        let replay = replay_from_truth(prepared.as_ref(), spec, question.light, &question.truth.mask, &mask, &pixels)?;
+        let ledger = ledger(&verdict, &question.truth.mask, &mask, &replay)?;
         (replay, ledger)
     } else {
         (Replay::default(), Ledger::default())
     };
-    Ok(Evaluation { prepared, mask: measured.mask, verdict, replay, ledger, cost: measured.cost })
+    Ok(Evaluation { prepared, mask, verdict, replay, ledger, cost })
 }
 
 /// Replays the given pixels (ascending indices of asked pixels) from the truth to `answer`. Where a technique takes an

@@ -1,7 +1,7 @@
 //! What evaluations share: the scene on the device, its rays, its receivers; and the truth for one light.
 
 use crate::cast::Casters;
-use crate::gpu::{GBuffer, Geometry, Gpu, GpuError};
+use crate::gpu::{GBufferPass, Geometry, Gpu, GpuError};
 use crate::inspect::{Adjacency, neighbours};
 use crate::mask::Truth;
 use crate::receiver::{PixelClass, Receivers};
@@ -26,6 +26,8 @@ pub struct View<'s> {
     pub adjacency: Adjacency,
     /// The point behind every pixel.
     pub receivers: Receivers,
+    /// The pass that found them.
+    pub gbuffer: GBufferPass,
 }
 
 /// The question about one light: which pixels are asked, and the exact answer.
@@ -90,14 +92,16 @@ impl<'s> View<'s> {
     /// What the device reported.
     pub fn new(gpu: &'s Gpu, scene: &'s Scene) -> Result<Self, GpuError> {
         let geometry = Geometry::upload(gpu, scene)?;
-        let ids = GBuffer::render(gpu, &geometry, scene)?;
+        let gbuffer = GBufferPass::new(gpu, scene)?;
+        gbuffer.run(gpu, &geometry)?;
         Ok(Self {
             gpu,
             scene,
             geometry,
             casters: Casters::new(scene),
             adjacency: neighbours(scene),
-            receivers: Receivers::new(scene, &ids.triangles),
+            receivers: Receivers::new(scene, &gbuffer.read(gpu)?.triangles),
+            gbuffer,
         })
     }
 
@@ -127,8 +131,7 @@ impl<'s> View<'s> {
     ) -> Result<Question<'s>, Interrupted> {
         let key = self.truth_key(light);
         match store.get(&key).map(|entry| truth::decode(&key, &entry)) {
-            Some(Ok(truth)) => {
-                let classes = self.receivers.classify(self.scene, light);
+            Some(Ok((classes, truth))) => {
                 // Only what brute force agreed with was kept.
                 let brute_disagreements = Vec::new();
                 return Ok(Question {
@@ -145,7 +148,7 @@ impl<'s> View<'s> {
         }
         let question = self.ask(light, watch)?;
         if question.brute_disagreements.is_empty()
-            && let Ok(entry) = truth::encode(&key, &question.truth)
+            && let Ok(entry) = truth::encode(&key, &question.classes, &question.truth)
         {
             store.put(&key, &entry);
         }

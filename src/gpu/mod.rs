@@ -17,7 +17,7 @@ pub use adapter::{AdapterSummary, LimitsSummary, describe_adapters};
 pub(crate) use build::Drawing;
 pub use context::Gpu;
 pub use error::{GpuError, INSTALL_HINT};
-pub use gbuffer::GBuffer;
+pub use gbuffer::{GBuffer, GBufferPass};
 pub(crate) use geometry::CORNER_LAYOUT;
 pub use geometry::Geometry;
 pub use recorder::{PassRecord, Recorder, WorkCounts};

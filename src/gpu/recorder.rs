@@ -15,7 +15,7 @@ const STATISTICS: PipelineStatisticsTypes = PipelineStatisticsTypes::VERTEX_SHAD
     .union(PipelineStatisticsTypes::FRAGMENT_SHADER_INVOCATIONS);
 const STATISTICS_PER_PASS: usize = 3;
 
-/// Work the device counted in one render pass.
+/// Work counted in one pass: by the device in a render pass, beforehand in a compute pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WorkCounts {
     /// Vertex shader invocations.
@@ -24,6 +24,20 @@ pub struct WorkCounts {
     pub primitives: u64,
     /// Fragment shader invocations.
     pub fragments: u64,
+    /// Texels that a compute pass reads at most.
+    pub texel_reads: u64,
+}
+
+impl std::ops::Add for WorkCounts {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            vertices: self.vertices + other.vertices,
+            primitives: self.primitives + other.primitives,
+            fragments: self.fragments + other.fragments,
+            texel_reads: self.texel_reads + other.texel_reads,
+        }
+    }
 }
 
 /// What one pass cost.
@@ -33,7 +47,7 @@ pub struct PassRecord {
     pub name: &'static str,
     /// GPU time; `None` where the adapter has no timestamps.
     pub ms: Option<f64>,
-    /// Counted work; `None` where the adapter counts none. A compute pass counts nothing here.
+    /// Counted work; `None` where the adapter counts none.
     pub work: Option<WorkCounts>,
 }
 
@@ -45,6 +59,8 @@ pub struct Recorder<'g> {
     statistics: Option<QuerySet>,
     names: Vec<&'static str>,
     render_passes: Vec<usize>,
+    /// Of each pass.
+    texel_reads: Vec<u64>,
 }
 
 impl std::fmt::Debug for Recorder<'_> {
@@ -71,6 +87,7 @@ impl<'g> Recorder<'g> {
             ),
             names: Vec::new(),
             render_passes: Vec::new(),
+            texel_reads: Vec::new(),
         }
     }
 
@@ -104,10 +121,16 @@ impl<'g> Recorder<'g> {
         drop(pass);
         self.render_passes.push(self.names.len());
         self.names.push(name);
+        self.texel_reads.push(0);
     }
 
-    /// A compute pass.
-    pub(crate) fn compute(&mut self, name: &'static str, dispatch: impl FnOnce(&mut ComputePass<'_>)) {
+    /// A compute pass, and the texels that it reads at most.
+    pub(crate) fn compute(
+        &mut self,
+        name: &'static str,
+        texel_reads: u64,
+        dispatch: impl FnOnce(&mut ComputePass<'_>),
+    ) {
         let query = self.names.len() as u32;
         let mut pass = self.encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some(name),
@@ -120,6 +143,7 @@ impl<'g> Recorder<'g> {
         dispatch(&mut pass);
         drop(pass);
         self.names.push(name);
+        self.texel_reads.push(texel_reads);
     }
 
     /// Submits everything, waits, and reads what each pass cost.
@@ -130,7 +154,7 @@ impl<'g> Recorder<'g> {
         let passes = self.names.len();
         let stamps = self.resolve(self.timestamps.clone(), 2 * passes as u32, 1);
         let counts = self.resolve(self.statistics.clone(), self.render_passes.len() as u32, STATISTICS_PER_PASS);
-        let Self { gpu, encoder, names, render_passes, .. } = self;
+        let Self { gpu, encoder, names, render_passes, texel_reads, .. } = self;
         gpu.scoped(during, || gpu.queue.submit([encoder.finish()]))?;
         let read = |buffer: Option<Buffer>| buffer.map(|b| gpu.read_buffer::<u64>(&b, during)).transpose();
         let stamps = read(stamps)?;
@@ -142,12 +166,12 @@ impl<'g> Recorder<'g> {
             .map(|(i, name)| PassRecord {
                 name,
                 ms: stamps.as_ref().map(|s| s[2 * i + 1].saturating_sub(s[2 * i]) as f64 * ms_per_tick),
-                work: counts.as_ref().map(|_| WorkCounts::default()),
+                work: counts.as_ref().map(|_| WorkCounts { texel_reads: texel_reads[i], ..WorkCounts::default() }),
             })
             .collect();
         for (counted, pass) in counts.iter().flat_map(|c| c.chunks_exact(STATISTICS_PER_PASS)).zip(render_passes) {
             let [vertices, primitives, fragments] = [counted[0], counted[1], counted[2]];
-            records[pass].work = Some(WorkCounts { vertices, primitives, fragments });
+            records[pass].work = Some(WorkCounts { vertices, primitives, fragments, texel_reads: 0 });
         }
         Ok(records)
     }

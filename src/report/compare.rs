@@ -120,11 +120,13 @@ fn grown_causes(before: &Run, after: &Run) -> BTreeMap<Cause, i64> {
 
 fn cost_ratios(before: &Run, after: &Run, same_adapter: bool) -> Vec<(&'static str, f64)> {
     let (Some(before), Some(after)) = (&before.cost, &after.cost) else { return Vec::new() };
-    let ms = |cost: &crate::technique::Cost| cost.gpu_ms.map(|time| time.median).filter(|_| same_adapter);
+    // Whatever slowed one of the two reports down slowed its G-buffers down, too.
+    let ms = |cost: &crate::technique::Cost| cost.gbuffers().filter(|_| same_adapter);
     let figures = [
         ("vertices", before.vertices.map(|n| n as f64), after.vertices.map(|n| n as f64)),
         ("primitives", before.primitives.map(|n| n as f64), after.primitives.map(|n| n as f64)),
         ("fragments", before.fragments.map(|n| n as f64), after.fragments.map(|n| n as f64)),
+        ("texel reads", before.texel_reads.map(|n| n as f64), after.texel_reads.map(|n| n as f64)),
         ("bytes", Some(before.bytes as f64), Some(after.bytes as f64)),
         (MS, ms(before), ms(after)),
     ];

@@ -1,12 +1,12 @@
 //! The asked receivers on the GPU, rounded to f32, and the visibilities that come back.
 
 use super::TechniqueError;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, Recorder};
 use crate::mask::{Mask, Visibility};
 use crate::receiver::{PixelClass, Receivers};
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{Buffer, BufferUsages};
+use wgpu::{BindGroup, Buffer, BufferUsages, ComputePipeline};
 
 /// A receiver as the shaders read it (`Receiver` in `shaders/shared/receiver.wgsl`).
 #[repr(C)]
@@ -111,6 +111,32 @@ impl ReceiverBuffer {
             }
         }
         Ok(mask)
+    }
+}
+
+/// What a lookup runs with.
+pub(crate) struct LookUp<'l> {
+    /// The pass's name.
+    pub(crate) name: &'static str,
+    /// A thread per receiver.
+    pub(crate) pipeline: &'l ComputePipeline,
+    /// One for each chunk.
+    pub(crate) bindings: &'l [BindGroup],
+    /// Texels that a receiver reads at most.
+    pub(crate) texel_reads: u32,
+}
+
+impl ReceiverBuffer {
+    /// Records a pass that looks every receiver up.
+    pub(crate) fn look_up(&self, recorder: &mut Recorder<'_>, look_up: &LookUp<'_>) {
+        let receivers: usize = self.chunks.iter().map(|chunk| chunk.pixels.len()).sum();
+        recorder.compute(look_up.name, receivers as u64 * u64::from(look_up.texel_reads), |pass| {
+            pass.set_pipeline(look_up.pipeline);
+            for (chunk, bindings) in self.chunks.iter().zip(look_up.bindings) {
+                pass.set_bind_group(0, bindings, &[]);
+                chunk.dispatch(pass);
+            }
+        });
     }
 }
 

@@ -4,7 +4,7 @@
 //! a line, error falls and cost rises, so the first step within the budget is found by bisection; and once some
 //! configuration will do, another line is only asked whether it has one that is cheaper, which one or two trials settle.
 
-use crate::technique::Spec;
+use crate::technique::{Cost, Spec};
 
 /// The knobs along which error falls and cost rises.
 const RISING: [&str; 1] = ["size"];
@@ -25,8 +25,32 @@ pub struct Trial {
     pub cost: f64,
     /// The next step of the line costs no less than this; `cost` where nothing more is known.
     pub next_cost: f64,
+    /// No step of the line costs less than this; 0 where nothing is known.
+    pub least_cost: f64,
     /// Whether all that the budget does not bind (a limit on time) is kept.
     pub is_allowed: bool,
+}
+
+impl Trial {
+    /// A trial whose cost is counted work, of which the map's side changes only what is drawn and stored; `None` without
+    /// pipeline statistics.
+    #[must_use]
+    pub fn by_work(spec: &Spec, error: f64, cost: &Cost) -> Option<Self> {
+        /// 32-bit words of the least and of the largest texel there is.
+        const WORDS_PER_TEXEL: [f64; 2] = [0.5, 1.0];
+        /// The most views that a map has.
+        const MOST_VIEWS: f64 = 8.0;
+        let work = cost.work()? as f64;
+        let Some(name) = knob(spec) else {
+            return Some(Self { error, cost: work, next_cost: work, least_cost: work, is_allowed: true });
+        };
+        let texels = (spec.integer(name) as f64).powi(2);
+        let is_one_view = spec.technique().id() == "map" && spec.choice("projection").0 == "single";
+        let views = if is_one_view { 1.0 } else { MOST_VIEWS };
+        let of_size = cost.fragments? as f64 + views * texels * WORDS_PER_TEXEL[1];
+        let (next_cost, least_cost) = (work + 3.0 * texels * WORDS_PER_TEXEL[0], work - of_size);
+        Some(Self { error, cost: work, next_cost, least_cost, is_allowed: true })
+    }
 }
 
 /// A configuration that was tried: line, step, and what it showed.
@@ -159,7 +183,7 @@ impl<E, F: FnMut(usize, usize) -> Result<Option<Trial>, E>> Steps<'_, F> {
             match (trial.cost < cost, is_good) {
                 (true, true) => return Ok(Some(step)),
                 (true, false) if may_go_up => step += 1,
-                (false, true) if step > 0 => step -= 1,
+                (false, true) if step > 0 && trial.least_cost < cost => step -= 1,
                 // Cheaper steps are worse, dearer ones too dear.
                 _ => return Ok(None),
             }
@@ -200,6 +224,7 @@ mod tests {
                     error: quality * slope.powi(step as i32),
                     cost,
                     next_cost: cost + 3.0 * texels,
+                    least_cost: 50.0 * price,
                     is_allowed: true,
                 }
             };
@@ -236,7 +261,7 @@ mod tests {
 
     #[test]
     fn what_gives_no_answer_and_what_is_not_allowed_is_passed_over() {
-        let trial = |cost: f64| Trial { error: 0.0, cost, next_cost: cost, is_allowed: cost > 1.0 };
+        let trial = |cost: f64| Trial { error: 0.0, cost, next_cost: cost, least_cost: 0.0, is_allowed: cost > 1.0 };
         let step = |line: usize, _: usize| Ok::<_, Infallible>([None, Some(trial(1.0)), Some(trial(2.0))][line]);
         let Ok(found) = search(&[1, 1, 1], 0.5, step);
         assert_eq!(found.answer, Some((2, 0)));

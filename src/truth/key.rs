@@ -29,8 +29,8 @@ impl TruthKey {
         part(format!("{:?}", meshes.collect::<Vec<_>>()).as_bytes());
         part(format!("{:?} {:?}", scene.camera, scene.image_size).as_bytes());
         part(format!("{:?} {:?}", light.kind, light.range_m).as_bytes());
-        let ids = receivers.pixels.iter().flat_map(|r| r.map_or(u32::MAX, |r| r.triangle).to_le_bytes());
-        part(&ids.collect::<Vec<u8>>());
+        let ids: Vec<u32> = receivers.pixels.iter().map(|r| r.map_or(u32::MAX, |r| r.triangle)).collect();
+        part(bytemuck::cast_slice(&ids));
         Self(hash.finalize().into())
     }
 }

@@ -9,12 +9,14 @@
 )]
 
 use super::scenes::folder_of;
-use glam::UVec2;
+use glam::{DVec2, UVec2};
 use gnomon::cause::Cause;
 use gnomon::evaluate::{Effort, EvaluateError, Evaluation, Question, View, evaluate};
 use gnomon::gpu::Gpu;
 use gnomon::mask::Truth;
+use gnomon::receiver::Receiver;
 use gnomon::scene::{LoadOptions, Scene, SceneError, load};
+use gnomon::technique::map::Lookup;
 use gnomon::technique::{Spec, TechniqueError};
 use gnomon::watch::Unwatched;
 use std::sync::LazyLock;
@@ -99,4 +101,37 @@ pub(crate) fn shipped_if_fetched(name: &str, size: UVec2) -> Option<Scene> {
 pub(crate) fn named(evaluation: &Evaluation<'_>, causes: &[Cause]) -> Vec<u32> {
     let of_cause = evaluation.ledger.wrong.iter().filter(|(_, cause)| causes.contains(cause));
     of_cause.map(|(pixel, _)| *pixel).collect()
+}
+
+/// The truth at the place where a lookup's texel has its centre, on the receiver's plane.
+pub(crate) fn lit_at_texel_centre(shot: &Shot<'_>, lookup: &Lookup, receiver: &Receiver) -> bool {
+    let site = lookup.project(receiver.point_in_world).expect("inside a face");
+    let at = site.position_in_texels();
+    let [along_u, along_v] = site.texel_steps_m(receiver.normal_in_world);
+    let aside = at.floor() + 0.5 - at;
+    let point = receiver.point_in_world + aside.x * along_u + aside.y * along_v;
+    let segment = shot.question.light.segment_from(point, shot.view.scene.bounds().radius());
+    shot.view.casters.any_hit(&segment, Some(receiver.triangle)).is_none()
+}
+
+/// The mean truth at the places on the receiver's plane where the texels of a kernel around it have their centres, as
+/// if its face had no sides; `None` in a corner of the room, where the plane ends.
+pub(crate) fn lit_over_kernel(shot: &Shot<'_>, lookup: &Lookup, receiver: &Receiver, taps: i32) -> Option<f64> {
+    let view = lookup.select(receiver.point_in_world).first;
+    let own = lookup.project(receiver.point_in_world).expect("inside a face").position_in_texels().floor();
+    let bounds = shot.view.scene.bounds();
+    let normal = receiver.normal_in_world;
+    let mut lit = 0.0;
+    for (row, column) in (0..taps).flat_map(|row| (0..taps).map(move |column| (row, column))) {
+        let aside = DVec2::new(column.into(), row.into()) - f64::from(taps / 2) + 0.5;
+        let ray = lookup.ray_through(view, own + aside, &bounds).expect("through the room");
+        let along = ray.to - ray.from;
+        let point = ray.from + along * (normal.dot(receiver.point_in_world - ray.from) / normal.dot(along));
+        if point.clamp(bounds.min, bounds.max).distance(point) > 1e-6 {
+            return None;
+        }
+        let segment = shot.question.light.segment_from(point, bounds.radius());
+        lit += f64::from(u8::from(shot.view.casters.any_hit(&segment, Some(receiver.triangle)).is_none()));
+    }
+    Some(lit / f64::from(taps * taps))
 }

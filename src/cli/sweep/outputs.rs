@@ -24,10 +24,10 @@ struct CostAxis {
 const COST_AXES: [CostAxis; 2] = [
     CostAxis {
         name: "work",
-        label: "counted work: vertices + fragments + 32-bit words of maps and buffers",
+        label: "counted work: vertices + fragments + texel reads + 32-bit words of maps and buffers",
         of: |cost| cost.work().map(|work| work as f64),
     },
-    CostAxis { name: "ms", label: "GPU time, median, ms", of: |cost| cost.gpu_ms.map(|time| time.median) },
+    CostAxis { name: "gbuffers", label: "GPU time, median, multiples of the G-buffer's", of: Cost::gbuffers },
 ];
 
 /// Writes everything and says where.

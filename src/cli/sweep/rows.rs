@@ -7,7 +7,7 @@ use super::truths::TruthFolder;
 use crate::cli::command::Subject;
 use crate::cli::context::lights;
 use crate::cli::report;
-use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate};
+use crate::evaluate::{Effort, EvaluateError, Question, View, evaluate, time_evaluations};
 use crate::gpu::{Gpu, GpuError};
 use crate::report::model::Run;
 use crate::scene::{Light, Scene};
@@ -121,7 +121,12 @@ impl Session<'_> {
         let watch = RowWatch::new(self.terminal, self.limits.seconds);
         let outcome = guarded(|| {
             self.limits.admit(view, question, &row.spec)?;
-            evaluate(view, question, &row.spec, Effort::FULL, &watch).map_err(|error| watch.told(error))
+            evaluate(view, question, &row.spec, Effort::CAUSES, &watch)
+                .and_then(|mut evaluation| {
+                    time_evaluations(view, &mut [&mut evaluation], &watch)?;
+                    Ok(evaluation)
+                })
+                .map_err(|error| watch.told(error))
         });
         let (run, ended) = match outcome {
             Ok(evaluation) => {

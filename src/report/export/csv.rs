@@ -99,11 +99,13 @@ fn add_costs(add: &mut Add) {
     add("gpu_ms_min", |run| text(run.cost.as_ref()?.gpu_ms?.min));
     add("gpu_ms_max", |run| text(run.cost.as_ref()?.gpu_ms?.max));
     add("gpu_ms_runs", |run| text(run.cost.as_ref()?.gpu_ms?.runs));
+    add("gbuffer_ms", |run| text(run.cost.as_ref()?.gbuffer_ms?));
     add("prepare_ms", |run| text(run.cost.as_ref()?.prepare_ms?));
     add("bytes", |run| text(run.cost.as_ref()?.bytes));
     add("vertices", |run| text(run.cost.as_ref()?.vertices?));
     add("primitives", |run| text(run.cost.as_ref()?.primitives?));
     add("fragments", |run| text(run.cost.as_ref()?.fragments?));
+    add("texel_reads", |run| text(run.cost.as_ref()?.texel_reads?));
 }
 
 fn add_context(add: &mut Add) {

@@ -91,7 +91,17 @@ mod tests {
         assert_eq!(run["causes"]["acne"], json!({"pixels": 2, "sum": -2.1}));
         assert_eq!(
             keys(&run["cost"]),
-            ["bytes", "fragments", "gpu_ms", "passes", "prepare_ms", "primitives", "vertices"]
+            [
+                "bytes",
+                "fragments",
+                "gbuffer_ms",
+                "gpu_ms",
+                "passes",
+                "prepare_ms",
+                "primitives",
+                "texel_reads",
+                "vertices"
+            ]
         );
         assert_eq!(keys(&run["cost"]["gpu_ms"]), ["max", "median", "min", "runs"]);
         assert_eq!(run["cost"]["passes"], json!([{"name": "map", "ms": 0.75, "ms_min": 0.5, "ms_max": 1.0}]));

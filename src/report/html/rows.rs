@@ -37,12 +37,14 @@ pub(super) struct CostRow {
     median: String,
     min: String,
     max: String,
+    gbuffers: String,
     runs: String,
     passes: String,
     prepare: String,
     vertices: String,
     primitives: String,
     fragments: String,
+    texel_reads: String,
     bytes: String,
 }
 
@@ -117,12 +119,14 @@ pub(super) fn cost_rows(report: &Report) -> Vec<CostRow> {
             median: ms(|time| time.median),
             min: ms(|time| time.min),
             max: ms(|time| time.max),
+            gbuffers: or_nothing(cost.gbuffers().map(significant)),
             runs: or_nothing(cost.gpu_ms.map(|time| time.runs.to_string())),
             passes: passes.collect::<Vec<_>>().join(", "),
             prepare: or_nothing(cost.prepare_ms.map(significant)),
             vertices: count(cost.vertices),
             primitives: count(cost.primitives),
             fragments: count(cost.fragments),
+            texel_reads: count(cost.texel_reads),
             bytes: grouped(cost.bytes),
         })
     };

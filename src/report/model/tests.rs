@@ -42,12 +42,14 @@ pub(crate) fn full_run(scene: &str) -> Run {
     let mut run = Run::judged(question(scene, "map:size=512"), &verdict).explained_by(&ledger);
     run.cost = Some(Cost {
         gpu_ms: Some(GpuTime { median: 1.25, min: 1.1, max: 0.1 + 0.2, runs: 9 }),
+        gbuffer_ms: Some(0.5),
         passes: vec![PassTime { name: "map".to_owned(), ms: 0.75, ms_min: 0.5, ms_max: 1.0 }],
         prepare_ms: Some(3.5),
         bytes: 1 << 20,
         vertices: Some(300),
         primitives: Some(100),
         fragments: Some(262_144),
+        texel_reads: Some(196_608),
     });
     run.truth = Some(TruthSource {
         oracle: "exact".to_owned(),

@@ -172,11 +172,11 @@ impl IrregularPasses {
         gpu.queue.write_buffer(&self.draw, 0, bytemuck::bytes_of(&NO_RECTANGLES));
         let recorder = gpu.scoped("recording the irregular z-buffer", || {
             let mut recorder = Recorder::new(gpu);
-            recorder.compute("caster rectangles", |pass| {
+            recorder.compute("caster rectangles", 0, |pass| {
                 dispatch(pass, &self.rectangles, self.rectangle_bindings.as_ref(), self.triangles);
             });
             for (chunk, bindings) in receivers.chunks().iter().zip(&self.chunks) {
-                recorder.compute("receiver lists", |pass| {
+                recorder.compute("receiver lists", 0, |pass| {
                     dispatch(pass, &self.clear, Some(&bindings.clear), self.cells.max(bindings.receivers));
                     dispatch(pass, &self.insert, Some(&bindings.insert), bindings.receivers);
                 });
@@ -185,7 +185,7 @@ impl IrregularPasses {
                     pass.set_bind_group(0, &bindings.casters, &[]);
                     pass.draw_indirect(&self.draw, 0);
                 });
-                recorder.compute("resolve", |pass| {
+                recorder.compute("resolve", 0, |pass| {
                     pass.set_pipeline(&self.resolve);
                     pass.set_bind_group(0, &bindings.resolve, &[]);
                     chunk.dispatch(pass);

@@ -1,8 +1,10 @@
-//! What an ideal rasteriser would store: the exact depth along the ray through each texel's centre, cast in f64.
+//! What an ideal rasteriser would store: the exact depth along the ray through each texel's centre, cast in f64; or, in
+//! views that are drawn in straight pieces, what these leave at the texel's centre.
 
 use super::lookup::Lookup;
-use crate::cast::Casters;
+use crate::cast::{Casters, Hit};
 use crate::scene::Scene;
+use glam::DVec2;
 use rayon::prelude::*;
 
 /// One texel of the ideal map.
@@ -58,26 +60,58 @@ impl ExactTexels {
     }
 }
 
+/// A caster's surface at a place in a view, as far as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Surface {
+    pub(super) triangle: u32,
+    /// Not yet clamped to 0..=1.
+    pub(super) depth: f64,
+    /// What the rasteriser adds.
+    pub(super) bias: f64,
+}
+
 fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) -> ExactTexel {
     let (view, texel) = lookup.texel_of(index);
     let cleared = lookup.views[view].cleared();
-    let mut texel_holds = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
     let centre = texel.as_dvec2() + 0.5;
-    let Some(ray) = lookup.ray_through(view, centre, &casters.bounds()) else { return texel_holds };
-    let mut hits = Vec::new();
-    casters.all_hits(&ray, None, &mut hits);
-    for hit in hits.iter().filter(|hit| lookup.draws_side(scene, hit.triangle)) {
-        let Some(drawn) = lookup.drawn_depth(view, ray.from.lerp(ray.to, hit.t)) else { continue };
-        let unbiased_depth = drawn.clamp(0.0, 1.0);
-        let bias = lookup.hardware_bias(view, scene.triangle_in_world(hit.triangle));
-        let depth = (drawn + bias).clamp(0.0, 1.0);
+    let surfaces = drawn_in_pieces(lookup, view, centre).unwrap_or_else(|| cast(scene, casters, lookup, view, centre));
+    let mut texel_holds = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
+    for surface in surfaces {
+        let unbiased_depth = surface.depth.clamp(0.0, 1.0);
+        let depth = (surface.depth + surface.bias).clamp(0.0, 1.0);
         let is_nearer = |a: f64, b: f64| lookup.views[view].is_nearer(a, b);
         if texel_holds.triangle.is_none() || is_nearer(depth, texel_holds.depth) {
-            texel_holds = ExactTexel { depth, triangle: Some(hit.triangle), ..texel_holds };
+            texel_holds = ExactTexel { depth, triangle: Some(surface.triangle), ..texel_holds };
         }
         if is_nearer(unbiased_depth, texel_holds.unbiased_depth) {
             texel_holds.unbiased_depth = unbiased_depth;
         }
     }
     texel_holds
+}
+
+/// The casters along the ray through a place in a view.
+fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, view: usize, position_in_texels: DVec2) -> Vec<Surface> {
+    let Some(ray) = lookup.ray_through(view, position_in_texels, &casters.bounds()) else { return Vec::new() };
+    let mut hits = Vec::new();
+    casters.all_hits(&ray, None, &mut hits);
+    let surface = |hit: &Hit| {
+        let depth = lookup.drawn_depth(view, ray.from.lerp(ray.to, hit.t))?;
+        let bias = lookup.hardware_bias(view, scene.triangle_in_world(hit.triangle));
+        lookup.draws_side(scene, hit.triangle).then_some(Surface { triangle: hit.triangle, depth, bias })
+    };
+    hits.iter().filter_map(surface).collect()
+}
+
+/// The pieces at a place in a view that is drawn in pieces; `None` if it is not.
+pub(super) fn drawn_in_pieces(lookup: &Lookup, view: usize, position_in_texels: DVec2) -> Option<Vec<Surface>> {
+    let view = &lookup.views[view];
+    let mut surfaces = Vec::new();
+    view.drawn.as_ref()?.at(view, position_in_texels, &mut |cover| {
+        if lookup.draws_depth(cover.depth) && lookup.draws_facing(if cover.faces_light { 1.0 } else { -1.0 }) {
+            let bias = lookup.rasteriser_bias(view, cover.largest_depth.clamp(0.0, 1.0), cover.slope_per_texel);
+            surfaces.push(Surface { triangle: cover.caster, depth: cover.depth, bias });
+        }
+    });
+    Some(surfaces)
 }

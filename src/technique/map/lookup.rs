@@ -1,23 +1,15 @@
 //! One shadow-map lookup: select the view, place the receiver in it, guard, bias, compare. This f64 twin is the
 //! specification of `shaders/map/lookup.wgsl`: same names, same order. Formulas: docs/map.md#lookup and docs/map.md#bias.
 
-use super::bias::Amounts;
+use super::bias::{Amounts, Clearance};
 use super::filter::Kernel;
+use super::offset::raster_slack_texels;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
 use crate::scene::{Bounds, Light, Scene, Segment};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
-
-/// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
-/// to that much of its slope; interpolation adds up to four units of 2⁻²⁴ per texel from the map's corner.
-fn raster_slack_texels(texels: u32) -> f64 {
-    1.0 / 256.0 + 4.0 * f64::from(texels) * 2.0_f64.powi(-24)
-}
-
-/// Format steps that a closed-form bias adds for the rounding of both sides of the comparison.
-const FORMAT_STEPS: f64 = 4.0;
 
 /// Everything a lookup needs besides the receiver.
 #[derive(Clone)]
@@ -31,8 +23,8 @@ pub struct Lookup {
     border: Border,
     near_mode: NearMode,
     caster_sides: CasterSides,
-    format: DepthFormat,
-    light: DVec4,
+    pub(super) format: DepthFormat,
+    pub(super) light: DVec4,
     /// Whether each tap is biased for as far as it is, not for the widest kernel.
     reaches_by_tap: bool,
 }
@@ -67,6 +59,10 @@ pub struct Placed {
     pub depth: f64,
     /// Depth compared with the stored one: `depth` less the bias.
     pub reference: f64,
+    /// By how much that changes from one texel to the next along u and along v.
+    pub reference_per_texel: DVec2,
+    /// By how much it changes at most.
+    pub reference_reach: f64,
 }
 
 /// A texel that a lookup reads, and the receiver as its view sees it.
@@ -83,6 +79,17 @@ impl Placed {
     #[must_use]
     pub fn own_texel(&self) -> IVec2 {
         self.position_in_texels.floor().as_ivec2()
+    }
+
+    /// The same with the reference of one texel of its view.
+    #[must_use]
+    pub fn at_texel(&self, texel: IVec2) -> Self {
+        if self.reference_per_texel == DVec2::ZERO {
+            return *self;
+        }
+        let away = texel.as_dvec2() + 0.5 - self.position_in_texels;
+        let change = self.reference_per_texel.dot(away).clamp(-self.reference_reach, self.reference_reach);
+        Self { reference: (self.reference + change).clamp(0.0, 1.0), ..*self }
     }
 }
 
@@ -157,10 +164,15 @@ impl Lookup {
     /// Whether casters are drawn with that side towards the light.
     #[must_use]
     pub fn draws_side(&self, scene: &Scene, triangle: u32) -> bool {
+        self.draws_facing(scene.facing(triangle, self.light))
+    }
+
+    /// The same for a side by which way it faces: positive towards the light.
+    pub(super) fn draws_facing(&self, facing: f64) -> bool {
         match self.caster_sides {
             CasterSides::All => true,
-            CasterSides::LightFacing => scene.facing(triangle, self.light) > 0.0,
-            CasterSides::AwayFacing => scene.facing(triangle, self.light) < 0.0,
+            CasterSides::LightFacing => facing > 0.0,
+            CasterSides::AwayFacing => facing < 0.0,
         }
     }
 
@@ -168,8 +180,12 @@ impl Lookup {
     #[must_use]
     pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
         let site = self.views[view].site(point_in_world);
-        let is_drawn = site.at.q > 0.0 && (self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&site.at.depth));
-        is_drawn.then_some(site.at.depth)
+        (site.at.q > 0.0 && self.draws_depth(site.at.depth)).then_some(site.at.depth)
+    }
+
+    /// Whether casters of that depth are drawn: in the range, or clamped to it.
+    pub(super) fn draws_depth(&self, depth: f64) -> bool {
+        self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&depth)
     }
 
     /// Places a receiver in a view.
@@ -182,7 +198,7 @@ impl Lookup {
             Err(outside) if self.border != Border::ClampEdge || self.views[view].project(moved).q <= 0.0 => {
                 Err(outside)
             }
-            Ok(_) | Err(_) => Ok(self.placed(view, moved, normal_in_world, DVec2::splat(self.bias.closed_form_kernel))),
+            Ok(_) | Err(_) => Ok(self.placed(view, moved, normal_in_world, DVec2::splat(self.own_reach_texels()))),
         }
     }
 
@@ -191,60 +207,41 @@ impl Lookup {
         let site = self.views[view].site(moved);
         let depth = if self.border == Border::ClampEdge { site.at.depth.clamp(0.0, 1.0) } else { site.at.depth };
         let reference = depth - site.view.depth_sign * self.bias_depth(&site, normal_in_world, reach_texels);
-        Placed { view, point_in_world: moved, position_in_texels: site.position_in_texels(), depth, reference }
-    }
-
-    fn moved_along_normal(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
-        if self.bias.normal_texels == 0.0 {
-            return point_in_world;
+        let follows_plane = self.bias.clearance == Clearance::ReceiverPlane;
+        Placed {
+            view,
+            point_in_world: moved,
+            position_in_texels: site.position_in_texels(),
+            depth,
+            reference,
+            reference_per_texel: if follows_plane { site.depth_per_texel(normal_in_world) } else { DVec2::ZERO },
+            reference_reach: self.cap_depth(&site),
         }
-        let texel_m = self.views[view].site(point_in_world).texel_m().max_element();
-        let towards_light = (self.light.truncate() - point_in_world * self.light.w).normalize_or_zero();
-        let sine = normal_in_world.cross(towards_light).length();
-        point_in_world + normal_in_world * (self.bias.normal_texels * texel_m * sine)
-    }
-
-    /// How far the comparison is moved towards the light, in units of depth.
-    fn bias_depth(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let along_light = self.bias.depth_m / site.metres_per_depth();
-        if self.bias.closed_form_kernel == 0.0 {
-            return along_light;
-        }
-        along_light + self.closed_form(site, normal_in_world, reach_texels)
-    }
-
-    /// The closed-form bias: what suffices, but no more than the cap (docs/map.md#bias), in units of depth.
-    #[must_use]
-    pub fn closed_form(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let cap = self.bias.cap_texels * site.texel_m().max_element() / site.metres_per_depth();
-        self.sufficient_bias(site, normal_in_world, reach_texels).min(cap)
-    }
-
-    /// The bias that the receiver's own slope needs for texels up to that far away, in units of depth.
-    #[must_use]
-    pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
-        let slope_per_texel = site.slope_per_texel(normal_in_world);
-        let reach = reach_texels + raster_slack_texels(self.texels().max_element());
-        reach.dot(slope_per_texel) + site.rounding(slope_per_texel) + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
     /// The texel of a placed receiver's view, or beyond the view's side what stands for it; `None` outside the map.
     #[must_use]
     pub fn tap(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Option<Tap> {
-        if self.is_inside(texel) {
-            let reach_texels = (texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(DVec2::splat(0.5));
-            let placed = match self.reaches_by_tap && self.bias.closed_form_kernel != 0.0 {
-                true => self.placed(placed.view, placed.point_in_world, normal_in_world, reach_texels),
-                false => *placed,
-            };
-            return Some(Tap { placed, texel });
+        let own = &self.views[placed.view];
+        if own.holds(texel) {
+            return Some(Tap { placed: self.placed_for(placed, normal_in_world, texel), texel });
         }
         let across = if self.seam == Seam::PerTap { self.tap_across(placed, normal_in_world, texel) } else { None };
         let is_clamped = self.seam == Seam::Clamp || self.border == Border::ClampEdge;
         across.or_else(|| {
-            let nearest = texel.clamp(IVec2::ZERO, self.texels().as_ivec2() - 1);
-            is_clamped.then_some(Tap { placed: *placed, texel: nearest })
+            let nearest = own.layout.nearest_texel(texel, own.texels);
+            is_clamped.then_some(Tap { placed: placed.at_texel(nearest), texel: nearest })
         })
+    }
+
+    /// A receiver with the reference that one of its view's texels is compared with: biased for as far as that is, where
+    /// filters ask for it.
+    fn placed_for(&self, placed: &Placed, normal_in_world: DVec3, texel: IVec2) -> Placed {
+        if !self.reaches_by_tap || self.bias.clearance != Clearance::ClosedForm {
+            return placed.at_texel(texel);
+        }
+        let reach_texels = (texel.as_dvec2() + 0.5 - placed.position_in_texels).abs().max(DVec2::splat(0.5));
+        self.placed(placed.view, placed.point_in_world, normal_in_world, reach_texels)
     }
 
     /// The texel of another view that a texel beyond the side of the receiver's view falls in.
@@ -257,11 +254,14 @@ impl Lookup {
         let found = self.views[view].project(beside);
         let texel = (found.uv * own.texels.as_dvec2()).floor().as_ivec2();
         let site = self.views[view].site(placed.point_in_world);
-        if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.is_inside(texel) {
+        if view == placed.view || found.q <= 0.0 || site.at.q <= 0.0 || !self.views[view].holds(texel) {
             return None;
         }
-        let reach_texels = (texel.as_dvec2() + 0.5 - site.position_in_texels()).abs();
-        Some(Tap { placed: self.placed(view, placed.point_in_world, normal_in_world, reach_texels), texel })
+        let is_on_plane = self.bias.clearance == Clearance::ReceiverPlane;
+        let away = (texel.as_dvec2() + 0.5 - site.position_in_texels()).abs();
+        let reach_texels = if is_on_plane { DVec2::ZERO } else { away };
+        let placed = self.placed(view, placed.point_in_world, normal_in_world, reach_texels);
+        Some(Tap { placed: placed.at_texel(texel), texel })
     }
 
     /// What the comparison gives outside the map.
@@ -276,16 +276,13 @@ impl Lookup {
         self.views[view].depth_sign * (reference - stored) <= 0.0
     }
 
-    fn is_inside(&self, texel: IVec2) -> bool {
-        texel.min_element() >= 0 && texel.cmplt(self.texels().as_ivec2()).all()
-    }
-
     /// Index of a texel, layer by layer and row by row, or `None` outside its view.
     #[must_use]
     pub fn texel_index(&self, view: usize, texel: IVec2) -> Option<u32> {
         let size = self.texels();
         let row = view as u32 * size.y + texel.y as u32;
-        self.is_inside(texel).then(|| row * size.x + texel.x as u32)
+        let is_inside = texel.min_element() >= 0 && texel.cmplt(size.as_ivec2()).all();
+        is_inside.then(|| row * size.x + texel.x as u32)
     }
 
     /// View and texel of an index.
@@ -294,22 +291,6 @@ impl Lookup {
         let size = self.texels();
         let row = index / size.x;
         ((row / size.y) as usize, UVec2::new(index % size.x, row % size.y))
-    }
-
-    /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
-    #[must_use]
-    pub fn hardware_bias(&self, view: usize, [a, b, c]: [DVec3; 3]) -> f64 {
-        if self.bias.constant_units == 0 && self.bias.slope == 0.0 {
-            return 0.0;
-        }
-        let view = &self.views[view];
-        let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
-        let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
-        let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
-        let constant = f64::from(self.bias.constant_units) * self.format.hardware_unit(largest);
-        let bias = constant + self.bias.slope * slope;
-        let clamped = if self.bias.clamp > 0.0 { bias.min(self.bias.clamp) } else { bias };
-        view.depth_sign * clamped
     }
 
     /// All world points within `bounds` that a view's map position looks along, nearest to the light first.
@@ -331,17 +312,20 @@ impl Lookup {
             kernel: kernel.number,
             seam: self.seam as u32,
             border: self.border as u32,
-            closed_form_kernel: self.bias.closed_form_kernel as f32,
+            clearance: self.bias.clearance as u32,
+            bias_kernel: self.bias.kernel as f32,
             raster_slack_texels: raster_slack_texels(self.texels().max_element()) as f32,
             cap_texels: self.bias.cap_texels as f32,
             normal_texels: self.bias.normal_texels as f32,
             depth_m: self.bias.depth_m as f32,
+            depth_texels: self.bias.depth_texels as f32,
             fixed_step,
             float_step,
             reaches_by_tap: self.reaches_by_tap.into(),
             turns: kernel.turns.into(),
             seed: kernel.seed,
             padding: 0,
+            padding_2: [0; 2],
         }
     }
 }
@@ -355,17 +339,20 @@ pub(super) struct LookupUniform {
     kernel: u32,
     seam: u32,
     border: u32,
-    closed_form_kernel: f32,
+    clearance: u32,
+    bias_kernel: f32,
     raster_slack_texels: f32,
     cap_texels: f32,
     normal_texels: f32,
     depth_m: f32,
+    depth_texels: f32,
     fixed_step: f32,
     float_step: f32,
     reaches_by_tap: u32,
     turns: u32,
     seed: u32,
     padding: u32,
+    padding_2: [u32; 2],
 }
 
 #[cfg(test)]
@@ -387,17 +374,20 @@ mod tests {
                 kernel,
                 seam,
                 border,
-                closed_form_kernel,
+                clearance,
+                bias_kernel,
                 raster_slack_texels,
                 cap_texels,
                 normal_texels,
                 depth_m,
+                depth_texels,
                 fixed_step,
                 float_step,
                 reaches_by_tap,
                 turns,
                 seed,
                 padding,
+                padding_2,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {
@@ -409,6 +399,7 @@ mod tests {
                 selector,
                 depth_sign,
                 blend_per_m,
+                edge_rad,
                 padding
             });
             assert_eq!(wgsl_layout(&files, "View"), in_rust, "{label}");

@@ -15,6 +15,7 @@ mod lookup;
 mod lookup_facts;
 mod means;
 mod moment_passes;
+mod offset;
 mod outline;
 mod own_surface;
 mod passes;
@@ -94,11 +95,18 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
         return refused(format!("filter={filter} reckons with distances: it needs depth_metric=linear, or auto"));
     }
     if is_linear && !settings.projection.has_linear_depth() {
-        return refused(format!("projection={projection} warps depth along: it has no depth_metric=linear"));
+        return refused(format!(
+            "projection={projection} has no depth_metric=linear: its depth is not the distance along one axis"
+        ));
     }
     if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
         return refused(format!(
             "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
+        ));
+    }
+    if settings.filter.moments().is_some() && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
+        return refused(format!(
+            "bias=receiver-plane compares texel by texel, filter={filter} averages before: it needs another bias"
         ));
     }
     if settings.filter.softens() && !settings.projection.is_frustum() {
@@ -198,6 +206,13 @@ pub(in crate::technique) fn bias_params() -> Vec<Param> {
         param("bias_clamp", "depth", real(0.0, 1.0), Value::Real(0.0), "largest hardware bias; 0: no limit"),
         param("bias_depth_m", "m", real(0.0, MAX_M), Value::Real(0.0), "bias along the light at the receiver"),
         param(
+            "bias_depth_texels",
+            "texels",
+            real(0.0, 1e4),
+            Value::Real(0.0),
+            "the same in widths of a texel at the receiver",
+        ),
+        param(
             "bias_normal_texels",
             "texels",
             real(0.0, 64.0),
@@ -209,7 +224,7 @@ pub(in crate::technique) fn bias_params() -> Vec<Param> {
             "texels",
             real(1.0, 1e4),
             Value::Real(64.0),
-            "largest closed-form bias at grazing light",
+            "largest bias derived from the receiver's plane, at grazing light",
         ),
     ]
 }

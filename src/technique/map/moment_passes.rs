@@ -25,6 +25,7 @@ pub(super) struct MomentPasses {
     means: Texture,
     overflowed: Buffer,
     bytes: u64,
+    texel_reads: u64,
 }
 
 /// Means along one axis.
@@ -72,12 +73,14 @@ impl MomentPasses {
         let by_rows = array_view(&rows);
         let from_rows = [(0, BindingResource::TextureView(&by_rows)), (3, overflowed.as_entire_binding())];
         let texels_of = |texture: &Texture| u64::from(texture.width()) * u64::from(texture.height());
+        let written = u64::from(count) * (texels_of(&rows) + texels_of(&means));
         Self {
             passes: [
                 pass("moments by rows", &of_rows, &rows, &[(0, BindingResource::TextureView(layers))]),
                 pass("moments by columns", &of_columns, &means, &from_rows),
             ],
-            bytes: storage.bytes() * u64::from(count) * (texels_of(&rows) + texels_of(&means)),
+            bytes: storage.bytes() * written,
+            texel_reads: u64::from(settings.kernel.number) * written,
             means,
             overflowed,
         }
@@ -91,7 +94,7 @@ impl MomentPasses {
     /// After the map is drawn.
     pub(super) fn record(&self, gpu: &Gpu, recorder: &mut Recorder<'_>) {
         gpu.queue.write_buffer(&self.overflowed, 0, &[0; size_of::<u32>()]);
-        recorder.compute("moments", |recorded| {
+        recorder.compute("moments", self.texel_reads, |recorded| {
             for pass in &self.passes {
                 recorded.set_pipeline(&pass.pipeline);
                 recorded.set_bind_group(0, &pass.bindings, &[]);

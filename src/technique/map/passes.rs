@@ -8,10 +8,10 @@ use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
-use crate::technique::receiver_buffer::{Chunk, ReceiverBuffer, workgroups};
+use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, DVec4, Mat4, Vec4};
-use projection::{GpuView, View};
+use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
     DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
@@ -19,10 +19,11 @@ use wgpu::{
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
-const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const CASTER_DEPTH: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_rows.wgsl")];
+const CASTER_PARABOLOID: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_paraboloid.wgsl")];
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
-const HOMOGENEOUS: Wgsl = wgsl!("map/homogeneous.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
+const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
 const GATHER: Wgsl = wgsl!("map/gather.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
@@ -32,8 +33,8 @@ fn lookup_files(projection: &dyn projection::Projection, filter: &dyn filter::Fi
 }
 
 /// Those of a lookup that only lacks its filter.
-fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 5] {
-    [RECEIVER, VIEW, HOMOGENEOUS, projection.shader(), LOOKUP]
+fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 6] {
+    [RECEIVER, VIEW, projection.layout(), projection.shader(), LOOKUP, OFFSET]
 }
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -41,7 +42,8 @@ fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 5] {
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![
         ("map caster".to_owned(), vec![CASTER]),
-        ("map caster depth".to_owned(), vec![CASTER_DEPTH]),
+        ("map caster depth".to_owned(), CASTER_DEPTH.to_vec()),
+        ("map caster paraboloid".to_owned(), CASTER_PARABOLOID.to_vec()),
         ("map gather".to_owned(), vec![GATHER]),
         ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
     ];
@@ -78,6 +80,9 @@ struct CasterUniform {
     depth_sign: f32,
     clamps: u32,
     padding: [u32; 2],
+    u_row: [f32; 4],
+    v_row: [f32; 4],
+    q_row: [f32; 4],
 }
 
 /// Texture, pipelines and bindings of one map and its lookups.
@@ -89,6 +94,7 @@ pub(super) struct MapPasses {
     points: Option<PointPass>,
     moments: Option<MomentPasses>,
     buffer_bytes: u64,
+    texel_reads: u32,
 }
 
 /// How one view is drawn.
@@ -97,6 +103,8 @@ struct Layer {
     pipeline: RenderPipeline,
     bindings: BindGroup,
     clear_depth: f32,
+    /// What is drawn in place of the casters, three corners per triangle.
+    pieces: Option<Buffer>,
     /// Whether a fragment shader writes depth: its pipeline then declares one colour target, which is none.
     writes_depth: bool,
 }
@@ -133,6 +141,7 @@ impl MapPasses {
                 .zip(numbers.as_ref())
                 .map(|(moments, numbers)| MomentPasses::new(gpu, settings, moments, lookup, &all_layers, numbers));
             let means = moments.as_ref().map(MomentPasses::view);
+            let layers = layers(gpu, settings, lookup, &map);
             let bind = |chunk: &Chunk| {
                 let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
                     (0, chunk.receivers.as_entire_binding()),
@@ -155,9 +164,11 @@ impl MapPasses {
                     + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
-                    + u64::from(layer_count) * size_of::<CasterUniform>() as u64,
+                    + u64::from(layer_count) * size_of::<CasterUniform>() as u64
+                    + layers.iter().filter_map(|layer| layer.pieces.as_ref()).map(Buffer::size).sum::<u64>(),
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
-                layers: layers(gpu, settings, lookup, &map),
+                layers,
+                texel_reads: texel_reads(settings, silhouettes.is_some()),
                 map,
                 lookup_pipeline,
                 points,
@@ -185,7 +196,13 @@ impl MapPasses {
                 recorder.render("map", no_color, Some(depth), |pass| {
                     pass.set_pipeline(&layer.pipeline);
                     pass.set_bind_group(0, &layer.bindings, &[]);
-                    geometry.draw_casters(pass);
+                    match &layer.pieces {
+                        Some(corners) => {
+                            pass.set_vertex_buffer(0, corners.slice(..));
+                            pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
+                        }
+                        None => geometry.draw_casters(pass),
+                    }
                 });
             }
             if let Some(points) = &self.points {
@@ -194,13 +211,9 @@ impl MapPasses {
             if let Some(moments) = &self.moments {
                 moments.record(gpu, &mut recorder);
             }
-            recorder.compute("lookup", |pass| {
-                pass.set_pipeline(&self.lookup_pipeline);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
+            receivers
+                .look_up(&mut recorder, &LookUp { name: "lookup", pipeline, bindings, texel_reads: self.texel_reads });
             recorder
         })?;
         recorder.finish("the shadow map")
@@ -261,6 +274,11 @@ impl MapPasses {
     }
 }
 
+/// Texels that a lookup reads at most. With silhouettes that is one depth and the points of five cells.
+fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
+    if has_silhouettes { 1 + 5 } else { settings.filter.texel_reads(&settings.kernel) }
+}
+
 fn all_layers(map: &Texture) -> TextureView {
     let dimension = Some(TextureViewDimension::D2Array);
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
@@ -287,10 +305,19 @@ fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec
             bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()]),
             pipeline,
             clear_depth: view.cleared() as f32,
+            pieces: view.drawn.as_ref().map(|drawn| piece_corners(gpu, drawn)),
             writes_depth: raster.writes_depth,
         }
     };
     (0..).zip(&lookup.views).map(layer).collect()
+}
+
+/// The corners of pieces; a buffer is never empty.
+fn piece_corners(gpu: &Gpu, drawn: &Drawn) -> Buffer {
+    let mut corners: Vec<[f32; 3]> =
+        drawn.pieces.iter().flat_map(|piece| piece.corners_in_world).map(|corner| corner.to_array()).collect();
+    corners.resize(corners.len().max(3), [0.0; 3]);
+    gpu.buffer("pieces of casters", &corners, BufferUsages::VERTEX)
 }
 
 fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUniform {
@@ -310,6 +337,9 @@ fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUn
         depth_sign: view.depth_sign as f32,
         clamps: u32::from(settings.near_mode != NearMode::Extend),
         padding: [0; 2],
+        u_row: view.rows.u.to_array(),
+        v_row: view.rows.v.to_array(),
+        q_row: view.rows.q.to_array(),
     }
 }
 
@@ -320,14 +350,23 @@ struct Raster {
     winding: f64,
     /// Whether the fragment shader writes depth, because the rasteriser's is not what is stored.
     writes_depth: bool,
+    /// Whether pieces are drawn on a paraboloid's disc.
+    on_disc: bool,
 }
 
 impl Raster {
     fn of(settings: &Settings, lookup: &Lookup, view: &View) -> Self {
+        let on_disc = view.drawn.is_some();
+        let has_own_depth = match settings.near_mode {
+            NearMode::Extend => false,
+            NearMode::DepthClamp => on_disc,
+            NearMode::FragmentClamp => true,
+        };
         Self {
+            on_disc,
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: settings.near_mode == NearMode::FragmentClamp || view.rows.depth_q != view.rows.q,
+            writes_depth: has_own_depth || (!on_disc && view.rows.depth_q != view.rows.q),
         }
     }
 
@@ -335,7 +374,11 @@ impl Raster {
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: if self.writes_depth { &[CASTER_DEPTH] } else { &[CASTER] },
+            files: match (self.on_disc, self.writes_depth) {
+                (true, _) => &CASTER_PARABOLOID,
+                (false, true) => &CASTER_DEPTH,
+                (false, false) => &[CASTER],
+            },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },

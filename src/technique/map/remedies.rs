@@ -7,6 +7,8 @@ use crate::technique::Spec;
 const LARGEST: i64 = 16_384;
 /// How much farther a cap of the closed-form bias is tried.
 const CAP_FACTOR: f64 = 4.0;
+/// Where cutting casters begins, degrees.
+const COARSEST_EDGE_DEG: f64 = 2.0;
 
 /// One knob changed in each; only changes that are legal and change anything.
 pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
@@ -40,6 +42,12 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::FilterWidth => vec![larger()],
         Cause::Precision => {
             vec![set("format", "depth32float"), set("depth_convention", "reversed"), set("bias", "closed-form")]
+        }
+        // What remains of the arcs that are drawn as chords.
+        Cause::TechniqueModel if spec.choice("projection").0 == "dual-paraboloid" => {
+            let edge_deg = spec.real("max_edge_deg");
+            let finer_deg = if edge_deg > 0.0 { 0.5 * edge_deg } else { COARSEST_EDGE_DEG };
+            vec![("max_edge_deg", finer_deg.to_string()), set("projection", "cube")]
         }
         Cause::StencilOverflow
         | Cause::OpenMesh

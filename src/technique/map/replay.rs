@@ -1,8 +1,8 @@
-//! A map replayed in f64, one approximation at a time: exact → coverage → bias → sampling → filter → stored texels →
-//! the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
-//! peter-panning that cancel.
+//! A map replayed in f64, one approximation at a time: exact → coverage → bias → chords → sampling → filter → stored
+//! texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
+//! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
 
-use super::exact_texels::ExactTexel;
+use super::exact_texels::{ExactTexel, Surface, drawn_in_pieces};
 use super::lookup::{Lookup, Outside, Placed, Tap};
 use super::means::Means;
 use super::own_surface::is_own_surface;
@@ -38,8 +38,10 @@ struct Blocker {
 }
 
 /// Stage names in order.
-const STAGES: [&str; 7] = ["coverage", "bias", "sampling", "filter", MOMENTS, "stored texels", "gpu"];
-/// Only where the filter has them.
+const STAGES: [&str; 8] = ["coverage", "bias", CHORDS, "sampling", "filter", MOMENTS, "stored texels", "gpu"];
+/// The stage of maps that are drawn in pieces.
+const CHORDS: &str = "chords";
+/// The stage of filters that average moments.
 const MOMENTS: &str = "moments";
 
 pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
@@ -51,7 +53,12 @@ pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Re
         values: replayed.iter().map(|(_, steps)| steps[index].value).collect(),
         causes: replayed.iter().map(|(_, steps)| steps[index].cause).collect(),
     };
-    let is_there = |(_, name): &(usize, &str)| *name != MOMENTS || replayer.means.is_some();
+    let in_pieces = map.lookup.views.iter().any(|view| view.drawn.is_some());
+    let is_there = |(_, name): &(usize, &str)| match *name {
+        CHORDS => in_pieces,
+        MOMENTS => replayer.means.is_some(),
+        _ => true,
+    };
     Ok(Replay {
         pixels: pixels.to_vec(),
         exact: replayed.iter().map(|(exact, _)| *exact).collect(),
@@ -84,9 +91,9 @@ impl<'r> Replayer<'r> {
         let shares = self.map.lookup.select(receiver.point_in_world);
         let in_views: Vec<(f64, Chain)> =
             shares.iter().map(|(view, weight)| (weight, self.chain(pixel, &receiver, &hits, view))).collect();
-        let [coverage, bias, sampling, filter, moments, stored_texels] = blended(exact, &in_views);
         let gpu = Step { value: answered, cause: Cause::Precision };
-        Some((exact, [coverage, bias, sampling, filter, moments, stored_texels, gpu]))
+        let chain = blended(exact, &in_views);
+        Some((exact, std::array::from_fn(|stage| chain.get(stage).copied().unwrap_or(gpu))))
     }
 
     /// What each stage before the GPU's makes of a receiver in one view.
@@ -100,18 +107,19 @@ impl<'r> Replayer<'r> {
         let Some(placed) = placed else {
             // Moved out along its normal.
             let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
-            return [coverage, border, border, border, border, Step { cause: Cause::Precision, ..border }];
+            return [coverage, border, border, border, border, border, Step { cause: Cause::Precision, ..border }];
         };
         let biased = self.biased(receiver, &placed);
         // Only a blocker that the bias took away asks for the reason.
         let is_lost = biased > coverage.value;
         let cause = if is_lost { self.cause_of_loss(pixel, receiver, view) } else { Cause::PeterPanning };
+        let chords = Step { value: self.by_chords(&placed).unwrap_or(biased), cause: Cause::TechniqueModel };
         let looked = self.looked(pixel, receiver, placed);
         let sampling = self.sampling(&looked);
         let filter = self.filter(&looked, sampling.value);
         let moments = self.moments(&looked, filter);
         let stored_texels = Step { value: self.by_stored_texels(&looked), cause: Cause::Precision };
-        [coverage, Step { value: biased, cause }, sampling, filter, moments, stored_texels]
+        [coverage, Step { value: biased, cause }, chords, sampling, filter, moments, stored_texels]
     }
 
     fn looked(&self, pixel: u32, receiver: &Receiver, placed: Placed) -> Looked<'_> {
@@ -129,7 +137,7 @@ impl<'r> Replayer<'r> {
         let exact = stretched.map_or(border, |looked| self.moments(&looked, self.filter(&looked, border)).value);
         let stored = stretched.map_or(border, |looked| self.by_stored_texels(&looked));
         let clipped = Step { value: exact, cause };
-        [clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
+        [clipped, clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -168,6 +176,18 @@ impl<'r> Replayer<'r> {
             })
         };
         visibility(!self.blockers(receiver, placed.point_in_world).iter().any(blocks))
+    }
+
+    /// What the pieces that are drawn in place of the casters answer, exactly where the receiver is; `None` where the
+    /// casters themselves are drawn.
+    fn by_chords(&self, placed: &Placed) -> Option<f64> {
+        let lookup = &self.map.lookup;
+        let surfaces = drawn_in_pieces(lookup, placed.view, placed.position_in_texels)?;
+        let blocks = |surface: &Surface| {
+            let depth = (surface.depth + surface.bias).clamp(0.0, 1.0);
+            !lookup.is_lit(placed.view, placed.reference, depth)
+        };
+        Some(visibility(!surfaces.iter().any(blocks)))
     }
 
     /// Why the blocker is lost that the bias reaches over: the bias, if the map would show it without any; if not, the

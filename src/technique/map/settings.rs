@@ -242,6 +242,7 @@ fn bias_numbers_of(spec: &Spec) -> bias::Numbers {
         slope: spec.real_or_auto("bias_slope"),
         clamp: spec.real("bias_clamp"),
         depth_m: spec.real("bias_depth_m"),
+        depth_texels: spec.real("bias_depth_texels"),
         normal_texels: spec.real("bias_normal_texels"),
         cap_texels: spec.real("bias_cap_texels"),
     }

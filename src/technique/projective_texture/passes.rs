@@ -4,6 +4,7 @@ use super::Settings;
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, GpuError, PassRecord, Recorder};
 use crate::technique::map::{Lookup, filter};
+use crate::technique::receiver_buffer::LookUp;
 use crate::technique::{Job, ReceiverBuffer};
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
@@ -147,13 +148,8 @@ impl PicturePasses {
                 pass.set_bind_group(0, &self.caster_bindings, &[]);
                 job.geometry.draw_casters(pass);
             });
-            recorder.compute("lookup", |pass| {
-                pass.set_pipeline(&self.lookup_pipeline);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.lookup_bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
+            receivers.look_up(&mut recorder, &LookUp { name: "lookup", pipeline, bindings, texel_reads: 1 });
             recorder
         })?;
         recorder.finish("the projective texture")

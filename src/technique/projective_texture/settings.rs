@@ -31,6 +31,7 @@ const NO_BIAS: bias::Numbers = bias::Numbers {
     slope: Some(0.0),
     clamp: 0.0,
     depth_m: 0.0,
+    depth_texels: 0.0,
     normal_texels: 0.0,
     cap_texels: 0.0,
 };

@@ -2,6 +2,7 @@
 
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Gpu, GpuError, PassRecord, Recorder};
+use crate::technique::receiver_buffer::{Chunk, LookUp};
 use crate::technique::{Job, ReceiverBuffer};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{
@@ -70,7 +71,7 @@ impl RayPasses {
         let of_primitive = gpu.buffer("surfaces of primitives", &of_primitive, BufferUsages::STORAGE);
         let of_triangle = gpu.buffer("surfaces of triangles", &of_triangle, BufferUsages::STORAGE);
         let pipeline = gpu.compute_pipeline("ray query", &SHADOW);
-        let bind = |chunk: &crate::technique::receiver_buffer::Chunk| {
+        let bind = |chunk: &Chunk| {
             let resources = [
                 chunk.receivers.as_entire_binding(),
                 chunk.visibilities.as_entire_binding(),
@@ -90,13 +91,8 @@ impl RayPasses {
     pub(super) fn run(&self, gpu: &Gpu, receivers: &ReceiverBuffer) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow rays", || {
             let mut recorder = Recorder::new(gpu);
-            recorder.compute("shadow rays", |pass| {
-                pass.set_pipeline(&self.pipeline);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.pipeline, self.bindings.as_slice());
+            receivers.look_up(&mut recorder, &LookUp { name: "shadow rays", pipeline, bindings, texel_reads: 0 });
             recorder
         })?;
         recorder.finish("the shadow rays")

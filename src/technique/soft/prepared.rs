@@ -3,7 +3,7 @@
 
 use super::{Pattern, points, replay};
 use crate::cause::{Cause, Replay};
-use crate::gpu::{PassRecord, WorkCounts};
+use crate::gpu::PassRecord;
 use crate::mask::{Mask, Visibility};
 use crate::receiver::PixelClass;
 use crate::scene::{Light, LightKind};
@@ -107,11 +107,7 @@ fn add(passes: &mut Vec<PassRecord>, more: Vec<PassRecord>) {
         match passes.get_mut(index).filter(|known| known.name == pass.name) {
             Some(known) => {
                 known.ms = known.ms.zip(pass.ms).map(|(a, b)| a + b);
-                known.work = known.work.zip(pass.work).map(|(a, b)| WorkCounts {
-                    vertices: a.vertices + b.vertices,
-                    primitives: a.primitives + b.primitives,
-                    fragments: a.fragments + b.fragments,
-                });
+                known.work = known.work.zip(pass.work).map(|(a, b)| a + b);
             }
             None => passes.push(pass),
         }

@@ -6,7 +6,7 @@ use super::settings::Settings;
 use super::volumes::Volumes;
 use crate::cast::Casters;
 use crate::cast::testing::Random;
-use crate::gpu::{GBuffer, Geometry, Gpu};
+use crate::gpu::{GBufferPass, Geometry, Gpu};
 use crate::inspect::fixtures::{cube, scene_of, torus};
 use crate::inspect::neighbours;
 use crate::receiver::Receivers;
@@ -38,7 +38,9 @@ fn scene() -> Scene {
 fn stencils(gpu: &Gpu, scene: &Scene, typed: &str) -> Vec<Vec<u8>> {
     const ORDERS: u64 = 4;
     let geometry = Geometry::upload(gpu, scene).unwrap();
-    let receivers = Receivers::new(scene, &GBuffer::render(gpu, &geometry, scene).unwrap().triangles);
+    let gbuffer = GBufferPass::new(gpu, scene).unwrap();
+    gbuffer.run(gpu, &geometry).unwrap();
+    let receivers = Receivers::new(scene, &gbuffer.read(gpu).unwrap().triangles);
     let light = &scene.lights[0];
     let classes = receivers.classify(scene, light);
     let (casters, adjacency) = (Casters::new(scene), neighbours(scene));

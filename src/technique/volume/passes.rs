@@ -10,6 +10,7 @@ use super::settings::{FarPlane, Format, Settings};
 use super::states::Side;
 use super::volumes::Volumes;
 use crate::gpu::{Gpu, GpuError, PassRecord, Recorder};
+use crate::technique::receiver_buffer::LookUp;
 use crate::technique::{Job, ReceiverBuffer};
 use wgpu::{
     BindGroup, BindingResource, ComputePipeline, LoadOp, Operations, RenderPass, RenderPassDepthStencilAttachment,
@@ -141,13 +142,8 @@ impl VolumePasses {
                 let stencil = if index == 0 { LoadOp::Clear(self.start.into()) } else { LoadOp::Load };
                 recorder.render(name, &[], Some(self.attachment(None, stencil)), |pass| self.draw(pass, draws));
             }
-            recorder.compute("resolve", |pass| {
-                pass.set_pipeline(&self.resolve);
-                for (chunk, bindings) in receivers.chunks().iter().zip(&self.resolve_bindings) {
-                    pass.set_bind_group(0, bindings, &[]);
-                    chunk.dispatch(pass);
-                }
-            });
+            let (pipeline, bindings) = (&self.resolve, self.resolve_bindings.as_slice());
+            receivers.look_up(&mut recorder, &LookUp { name: "resolve", pipeline, bindings, texel_reads: 1 });
             recorder
         })?;
         recorder.finish("the shadow volumes")

@@ -80,11 +80,11 @@ impl<'l> Lab<'l> {
             });
         }
         let prepared: Vec<&dyn Prepared> = evaluations.iter().flatten().map(|e| e.prepared.as_ref()).collect();
-        let mut times = time_in_turn(&prepared, ROUNDS, self.watch)?.into_iter();
+        let mut times = time_in_turn(&view, &prepared, ROUNDS, self.watch)?.into_iter();
         let mut sample = |evaluation: &Evaluation<'_>| {
             let causes = Outcome::of(evaluation).wrong_by_cause;
             Sample {
-                ms: times.next().flatten().map(|time| time.median),
+                ms: times.next().and_then(|times| Some(times.gpu_ms?.median)),
                 work: evaluation.cost.work().map(|work| work as f64),
                 wrong: evaluation.verdict.error.wrong_fraction.unwrap_or(0.0),
                 mean_abs: evaluation.verdict.error.mean_abs.unwrap_or(0.0),

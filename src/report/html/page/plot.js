@@ -6,6 +6,7 @@ const AXES = {
   fragments: { label: "shaded fragments (log)", of: cost => cost.fragments },
   bytes: { label: "bytes of maps and buffers (log)", of: cost => cost.bytes },
   vertices: { label: "vertices (log)", of: cost => cost.vertices },
+  texel_reads: { label: "texel reads (log)", of: cost => cost.texel_reads },
   ms: { label: "GPU milliseconds, median (log)", of: cost => cost.gpu_ms && cost.gpu_ms.median },
 };
 const MARKS = [

@@ -1,7 +1,7 @@
 //! `closed-form`: exactly the bias that the receiver's own slope and the filter's kernel need (docs/map.md#bias), computed
 //! at each receiver, plus the rounding of depth format, rasteriser and f32 position.
 
-use super::{Amounts, Bias, Numbers};
+use super::{Amounts, Bias, Clearance, Numbers};
 
 /// See the module.
 #[derive(Debug)]
@@ -12,6 +12,6 @@ impl Bias for ClosedForm {
         "closed-form"
     }
     fn amounts(&self, numbers: &Numbers, bias_kernel: f64) -> Amounts {
-        Amounts { closed_form_kernel: bias_kernel, ..numbers.amounts_with(0.0, 0.0) }
+        numbers.amounts_that_clear(Clearance::ClosedForm, bias_kernel)
     }
 }

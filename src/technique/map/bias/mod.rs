@@ -6,12 +6,21 @@
 mod closed_form;
 mod constant;
 mod none;
+mod normal;
+mod receiver_plane;
 mod slope;
 
 /// Every bias.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Bias] {
-    &[&none::None, &constant::Constant, &slope::Slope, &closed_form::ClosedForm]
+    &[
+        &none::None,
+        &constant::Constant,
+        &slope::Slope,
+        &normal::Normal,
+        &receiver_plane::ReceiverPlane,
+        &closed_form::ClosedForm,
+    ]
 }
 
 /// A way to choose the amounts.
@@ -33,10 +42,25 @@ pub struct Numbers {
     pub clamp: f64,
     /// Metres along the light.
     pub depth_m: f64,
+    /// Texel widths along the light.
+    pub depth_texels: f64,
     /// Normal offset in texels at a tilt of 90 degrees.
     pub normal_texels: f64,
-    /// Cap of the closed form, texels.
+    /// Cap of what is derived from the receiver's plane, texels.
     pub cap_texels: f64,
+}
+
+/// What keeps a receiver's plane clear of its own samples, worked out at each receiver; the numbers are the shader's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clearance {
+    /// Nothing.
+    None = 0,
+    /// The comparison is moved along the light by what the plane rises within the kernel.
+    ClosedForm = 1,
+    /// The receiver is moved along its normal until its plane clears the kernel.
+    Normal = 2,
+    /// Every tap is compared with the plane's own depth at the texel's centre.
+    ReceiverPlane = 3,
 }
 
 /// What is applied.
@@ -48,12 +72,16 @@ pub struct Amounts {
     pub slope: f64,
     /// Largest rasteriser bias in depth, 0 for no limit.
     pub clamp: f64,
-    /// Closed form at the receiver: texel widths of its depth slope; 0 switches it off.
-    pub closed_form_kernel: f64,
-    /// Cap of the closed form, texels.
+    /// What is derived from the receiver's plane.
+    pub clearance: Clearance,
+    /// How many texel widths of its slope that has to clear.
+    pub kernel: f64,
+    /// Cap of what is derived from the receiver's plane, texels.
     pub cap_texels: f64,
     /// Metres along the light at the receiver.
     pub depth_m: f64,
+    /// Texel widths along the light at the receiver.
+    pub depth_texels: f64,
     /// Normal offset of the receiver in texels at a tilt of 90 degrees.
     pub normal_texels: f64,
 }
@@ -64,25 +92,34 @@ impl Amounts {
         constant_units: 0,
         slope: 0.0,
         clamp: 0.0,
-        closed_form_kernel: 0.0,
+        clearance: Clearance::None,
+        kernel: 0.0,
         cap_texels: 0.0,
         depth_m: 0.0,
+        depth_texels: 0.0,
         normal_texels: 0.0,
     };
 }
 
 impl Numbers {
-    /// The amounts typed, with these in place of `auto` for the rasteriser, and no closed form.
+    /// The amounts typed, with these in place of `auto` for the rasteriser, and nothing derived.
     fn amounts_with(&self, auto_units: f64, auto_slope: f64) -> Amounts {
         Amounts {
             constant_units: self.constant_units.unwrap_or(auto_units).round() as i32,
             slope: self.slope.unwrap_or(auto_slope),
             clamp: self.clamp,
-            closed_form_kernel: 0.0,
+            clearance: Clearance::None,
+            kernel: 0.0,
             cap_texels: self.cap_texels,
             depth_m: self.depth_m,
+            depth_texels: self.depth_texels,
             normal_texels: self.normal_texels,
         }
+    }
+
+    /// The amounts typed, and what clears a receiver's plane of a filter's kernel.
+    fn amounts_that_clear(&self, clearance: Clearance, bias_kernel: f64) -> Amounts {
+        Amounts { clearance, kernel: bias_kernel, ..self.amounts_with(0.0, 0.0) }
     }
 }
 
@@ -101,19 +138,28 @@ const AUTO_SLOPE: f64 = 1.0;
 mod tests {
     use super::*;
 
-    const UNTYPED: Numbers =
-        Numbers { constant_units: None, slope: None, clamp: 0.0, depth_m: 0.0, normal_texels: 0.0, cap_texels: 64.0 };
+    const UNTYPED: Numbers = Numbers {
+        constant_units: None,
+        slope: None,
+        clamp: 0.0,
+        depth_m: 0.0,
+        depth_texels: 0.0,
+        normal_texels: 0.0,
+        cap_texels: 64.0,
+    };
 
     #[test]
     fn auto_amounts_follow_the_axis() {
         let hardware = |name| {
             let amounts = by_name(name).amounts(&UNTYPED, 0.5);
-            (amounts.constant_units, amounts.slope, amounts.closed_form_kernel)
+            (amounts.constant_units, amounts.slope, amounts.clearance, amounts.kernel)
         };
-        assert_eq!(hardware("none"), (0, 0.0, 0.0));
-        assert_eq!(hardware("constant"), (2, 0.0, 0.0));
-        assert_eq!(hardware("slope"), (2, 1.0, 0.0));
-        assert_eq!(hardware("closed-form"), (0, 0.0, 0.5));
+        assert_eq!(hardware("none"), (0, 0.0, Clearance::None, 0.0));
+        assert_eq!(hardware("constant"), (2, 0.0, Clearance::None, 0.0));
+        assert_eq!(hardware("slope"), (2, 1.0, Clearance::None, 0.0));
+        assert_eq!(hardware("normal"), (0, 0.0, Clearance::Normal, 0.5));
+        assert_eq!(hardware("receiver-plane"), (0, 0.0, Clearance::ReceiverPlane, 0.5));
+        assert_eq!(hardware("closed-form"), (0, 0.0, Clearance::ClosedForm, 0.5));
     }
 
     #[test]

@@ -65,6 +65,16 @@ pub trait Filter: Sync {
     /// same order. Weights add up to 1.
     fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64));
 
+    /// Texels that a lookup reads at most.
+    fn texel_reads(&self, kernel: &Kernel) -> u32 {
+        if self.moments().is_some() {
+            return moments::READS;
+        }
+        let mut reads = 0;
+        self.taps(kernel, DVec2::ZERO, &mut |_, _| reads += 1);
+        reads
+    }
+
     /// The same where taps follow from what the map holds. `blocker` gives the depth of a texel of the receiver's view
     /// that is nearer to the light than the receiver, `None` for others. No taps at all: lit.
     fn taps_at(&self, asked: &Asked<'_>, _blocker: Blocker<'_>, tap: &mut dyn FnMut(IVec2, f64)) {

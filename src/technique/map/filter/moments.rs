@@ -20,6 +20,8 @@ pub trait Moments: Sync {
     fn bound(&self, numbers: &[Vec4], z: f64, mean: DVec4) -> f64;
 }
 
+/// Means that a lookup reads.
+pub(super) const READS: u32 = 4;
 /// `z_of` of the shaders.
 const Z: Wgsl = wgsl!("map/moments/z.wgsl");
 /// What lookups of moment filters build on.

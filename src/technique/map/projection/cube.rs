@@ -110,7 +110,8 @@ impl Projection for Cube {
     }
 }
 
-fn position(light: &Light) -> Result<DVec3, Unsupported> {
+/// Where the light is.
+pub(super) fn position(light: &Light) -> Result<DVec3, Unsupported> {
     let homogeneous = light.homogeneous();
     if homogeneous.w == 0.0 {
         return Err(Unsupported::Light { kind: light.kind_name(), handled: "lights with a position" });

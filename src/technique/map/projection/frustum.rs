@@ -103,6 +103,7 @@ impl LightFrustum {
             blend_per_m: 0.0,
             depth_sign: if self.reversed { -1.0 } else { 1.0 },
             texels: self.texels,
+            drawn: None,
         }
     }
 

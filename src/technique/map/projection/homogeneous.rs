@@ -1,16 +1,19 @@
 //! The usual layout: u, v and depth are quotients of linear functions of the world point, as one 4 × 4 matrix (or two,
 //! if depth is not warped along) gives them. Twin of `shaders/map/homogeneous.wgsl`.
 
+use super::site::Site;
 use super::view::{Gradients, InMap, Layout, Rows, apply};
 use crate::scene::{Bounds, Segment};
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DVec2, DVec3, IVec2, UVec2, Vec4};
 
 /// See the module.
 #[derive(Debug)]
 pub(super) struct Homogeneous;
 
 /// Rays reach beyond the scene's box by this share of its radius, so that no rounding cuts its surface off.
-const BEYOND: f64 = 1e-3;
+pub(super) const BEYOND: f64 = 1e-3;
+/// Relative rounding of an f32 position through the rows.
+pub(super) const POSITION_ROUNDING: f64 = f32::EPSILON as f64;
 
 impl Layout for Homogeneous {
     fn project(&self, rows: &Rows, point_in_world: DVec3) -> InMap {
@@ -61,6 +64,23 @@ impl Layout for Homogeneous {
         let slope = self.gradients(rows, middle, &InMap { uv, depth: depth(middle), q: apply(rows.q, middle) }).depth;
         let runs_away = depth_sign * slope.dot(to - from) >= 0.0;
         Some(if runs_away { Segment { from, to } } else { Segment { from: to, to: from } })
+    }
+
+    /// The rounding of the point and the rows to f32; planes are planes in the map.
+    fn slack(&self, site: &Site<'_>, _: DVec3, slope_per_texel: DVec2, _: DVec2) -> f64 {
+        let rows = &site.view.rows;
+        let reach = |row: Vec4| row.as_dvec4().abs().dot(site.point_in_world.abs().extend(1.0));
+        let quotient = |row: Vec4, divisor: Vec4, value: f64, of: f64| (reach(row) + value.abs() * reach(divisor)) / of;
+        let depth_q = apply(rows.depth_q, site.point_in_world);
+        let depth = quotient(rows.depth, rows.depth_q, site.at.depth, depth_q);
+        let u = quotient(rows.u, rows.q, site.at.uv.x, site.at.q);
+        let v = quotient(rows.v, rows.q, site.at.uv.y, site.at.q);
+        let slope = slope_per_texel * site.view.texels.as_dvec2();
+        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v)
+    }
+
+    fn nearest_texel(&self, texel: IVec2, texels: UVec2) -> IVec2 {
+        texel.clamp(IVec2::ZERO, texels.as_ivec2() - 1)
     }
 }
 

@@ -28,6 +28,10 @@ pub struct Knobs {
     pub n_opt_scale: f64,
     /// `light-space-perspective`: smallest angle between view and light that is warped, radians.
     pub min_angle_rad: f64,
+    /// `dual-paraboloid`: largest angle that an edge of a drawn caster spans, radians; 0: as large as it is.
+    pub max_edge_rad: f64,
+    /// `dual-paraboloid`: whether the front half looks straight down, not where the light aims.
+    pub looks_down: bool,
 }
 
 impl Default for Knobs {
@@ -44,6 +48,8 @@ impl Default for Knobs {
             focus_at: -0.6,
             n_opt_scale: 1.0,
             min_angle_rad: 1.0_f64.to_radians(),
+            max_edge_rad: 2.0_f64.to_radians(),
+            looks_down: false,
         }
     }
 }
@@ -64,6 +70,8 @@ impl Knobs {
             focus_at: spec.real("focus_at"),
             n_opt_scale: spec.real("n_opt_scale"),
             min_angle_rad: spec.real("min_angle_deg").to_radians(),
+            max_edge_rad: spec.real("max_edge_deg").to_radians(),
+            looks_down: spec.choice("orientation").0 == "down",
         }
     }
 }
@@ -143,6 +151,20 @@ pub fn params() -> Vec<Param> {
             real(0.0, 90.0),
             Value::Real(1.0),
             "light-space-perspective: below this angle between view and light the map is not warped",
+        ),
+        param(
+            "max_edge_deg",
+            "degrees",
+            real(0.0, 90.0),
+            Value::Real(2.0),
+            "dual-paraboloid: casters are cut until no edge spans more as seen from the light; 0: not at all",
+        ),
+        param(
+            "orientation",
+            "",
+            plain(["aim", "down"]),
+            Value::Choice("aim", None),
+            "dual-paraboloid: where the front half looks, as the light aims or straight down",
         ),
     ]
 }

@@ -8,17 +8,22 @@ mod body;
 mod cascaded;
 mod clip;
 mod cube;
+mod drawn;
+mod dual_paraboloid;
 mod fit;
 mod frustum;
 mod homogeneous;
 mod knobs;
 mod light_space_perspective;
+mod paraboloid;
 mod perspective;
+mod pieces;
 mod single;
 mod site;
 mod trapezoidal;
 mod view;
 
+pub(in crate::technique::map) use drawn::Drawn;
 pub use frustum::{LightFrustum, Shape, Window};
 pub use knobs::{Knobs, params};
 pub use site::Site;
@@ -37,6 +42,7 @@ pub fn registry() -> &'static [&'static dyn Projection] {
     &[
         &single::Single,
         &cube::Cube,
+        &dual_paraboloid::DualParaboloid,
         &cascaded::Cascaded,
         &perspective::Perspective,
         &trapezoidal::Trapezoidal,
@@ -53,6 +59,10 @@ pub trait Projection: Sync {
     fn name(&self) -> &'static str;
     /// The WGSL that defines `select_views`.
     fn shader(&self) -> Wgsl;
+    /// The WGSL of its views' layout.
+    fn layout(&self) -> Wgsl {
+        wgsl!("map/homogeneous.wgsl")
+    }
     /// Whether its views can store distance along an axis from the light's position in place of projected depth.
     fn has_linear_depth(&self) -> bool {
         false

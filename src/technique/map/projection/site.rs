@@ -4,12 +4,10 @@
 //! B. Lloyd et al., "Warping and Partitioning for Low Error Shadow Maps", 2006, derive texel sizes likewise.
 
 use super::view::{Gradients, InMap, View};
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DVec2, DVec3};
 
 /// Depth per texel beyond which every bias is at its cap.
 const STEEPEST: f64 = 1e3;
-/// Relative rounding of an f32 position through the rows.
-const POSITION_ROUNDING: f64 = f32::EPSILON as f64;
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
@@ -58,26 +56,33 @@ impl Site<'_> {
         [v.cross(normal_in_world) / volume.x, normal_in_world.cross(u) / volume.y]
     }
 
-    /// Change of depth from one texel to the next along u and along v on a plane through the point, without sign.
+    /// Change of depth from one texel to the next along u and along v on a plane through the point.
     #[must_use]
-    pub fn slope_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
-        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
-        let slope = DVec2::new(self.gradients.depth.dot(along_u), self.gradients.depth.dot(along_v)).abs();
+    pub fn depth_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
         // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
-        DVec2::new(STEEPEST.min(slope.x), STEEPEST.min(slope.y))
+        let bounded = |change: f64| if change.abs() < STEEPEST { change } else { STEEPEST };
+        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
+        DVec2::new(bounded(self.gradients.depth.dot(along_u)), bounded(self.gradients.depth.dot(along_v)))
     }
 
-    /// By how much rounding the point and the rows to f32 can move its depth against a plane of that slope.
+    /// The same without sign.
     #[must_use]
-    pub fn rounding(&self, slope_per_texel: DVec2) -> f64 {
-        let rows = &self.view.rows;
-        let reach = |row: Vec4| row.as_dvec4().abs().dot(self.point_in_world.abs().extend(1.0));
-        let quotient = |row: Vec4, divisor: Vec4, value: f64, of: f64| (reach(row) + value.abs() * reach(divisor)) / of;
-        let depth_q = super::view::apply(rows.depth_q, self.point_in_world);
-        let depth = quotient(rows.depth, rows.depth_q, self.at.depth, depth_q);
-        let u = quotient(rows.u, rows.q, self.at.uv.x, self.at.q);
-        let v = quotient(rows.v, rows.q, self.at.uv.y, self.at.q);
-        let slope = slope_per_texel * self.view.texels.as_dvec2();
-        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v)
+    pub fn slope_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
+        self.depth_per_texel(normal_in_world).abs()
+    }
+
+    /// How far along its normal a plane through the point must move for its depth to change by what it changes from one
+    /// texel to the next along u and along v. Bounded, even where the light sees the plane edge-on.
+    #[must_use]
+    pub fn normal_offset_per_texel_m(&self, normal_in_world: DVec3) -> DVec2 {
+        let Gradients { u, v, depth } = self.gradients;
+        let change = DVec2::new(normal_in_world.dot(depth.cross(v)), normal_in_world.dot(u.cross(depth))).abs();
+        change / (depth.dot(self.ray()).abs() * self.view.texels.as_dvec2())
+    }
+
+    /// By how much texels up to `reach_texels` away may differ from its plane's slope.
+    #[must_use]
+    pub fn slack(&self, normal_in_world: DVec3, slope_per_texel: DVec2, reach_texels: DVec2) -> f64 {
+        self.view.layout.slack(self, normal_in_world, slope_per_texel, reach_texels)
     }
 }

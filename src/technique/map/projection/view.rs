@@ -4,10 +4,12 @@
 //! u, v and depth are quotients of them. Depth has a divisor of its own, so that a warp of u and v need not warp depth.
 //! A [`Layout`] says how the rows are read. Formulas: docs/map.md#matrices.
 
+use super::drawn::Drawn;
 use super::site::Site;
 use crate::scene::{Bounds, Segment};
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, UVec2, Vec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, IVec2, Mat4, UVec2, Vec4};
+use std::sync::Arc;
 
 /// How the rows of a view are read.
 pub trait Layout: std::fmt::Debug + Sync {
@@ -19,6 +21,11 @@ pub trait Layout: std::fmt::Debug + Sync {
     fn point_beside(&self, rows: &Rows, point_in_world: DVec3, at: &InMap, uv: DVec2) -> DVec3;
     /// All world points within `bounds` that lie at `uv`, nearest to the light first; `None` where there are none.
     fn ray_through(&self, rows: &Rows, uv: DVec2, bounds: &Bounds, depth_sign: f64) -> Option<Segment>;
+    /// By how much rounding, and drawing in straight pieces, can move the depths of a plane through a site against each
+    /// other, beyond its slope; the f64 twin of `slack`. `reach_texels`: how far away the texel is that is read.
+    fn slack(&self, site: &Site<'_>, normal_in_world: DVec3, slope_per_texel: DVec2, reach_texels: DVec2) -> f64;
+    /// The texel of the view that is nearest to one which may lie beyond its side; the f64 twin of `nearest_texel`.
+    fn nearest_texel(&self, texel: IVec2, texels: UVec2) -> IVec2;
 }
 
 /// The rows of a view, each a linear function of a homogeneous world point.
@@ -81,6 +88,8 @@ pub struct View {
     pub depth_sign: f64,
     /// Width and height in texels, the same for every view of a map.
     pub texels: UVec2,
+    /// What is drawn in place of the casters, where the layout bends their edges and the rasteriser does not.
+    pub(in crate::technique::map) drawn: Option<Arc<Drawn>>,
 }
 
 /// The map's coordinates from clip space: the one place where v is flipped.
@@ -138,6 +147,18 @@ impl View {
         self.depth_sign * (a - b) < 0.0
     }
 
+    /// Whether a texel belongs to the view, which need not fill its square.
+    #[must_use]
+    pub fn holds(&self, texel: IVec2) -> bool {
+        self.layout.nearest_texel(texel, self.texels) == texel
+    }
+
+    /// Largest angle that a drawn edge spans as seen from the light, radians; 0 where edges are drawn as they are.
+    #[must_use]
+    pub fn edge_rad(&self) -> f64 {
+        self.drawn.as_ref().map_or(0.0, |drawn| drawn.longest_rad)
+    }
+
     /// All world points within `bounds` that a map position looks along.
     #[must_use]
     pub fn ray_through(&self, position_in_texels: DVec2, bounds: &Bounds) -> Option<Segment> {
@@ -172,11 +193,11 @@ impl View {
     /// As the shaders read it.
     pub(in crate::technique) fn gpu(&self) -> GpuView {
         let Rows { u, v, q, depth, depth_q } = self.rows;
-        let padding = [0; 2];
+        let (edge_rad, padding) = (self.edge_rad() as f32, 0);
         let [u_row, v_row, q_row, depth_row, depth_q_row] = [u, v, q, depth, depth_q].map(|row| row.to_array());
         let selector = self.selector.to_array();
         let (depth_sign, blend_per_m) = (self.depth_sign as f32, self.blend_per_m);
-        GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, blend_per_m, padding }
+        GpuView { u_row, v_row, q_row, depth_row, depth_q_row, selector, depth_sign, blend_per_m, edge_rad, padding }
     }
 }
 
@@ -192,5 +213,6 @@ pub(in crate::technique) struct GpuView {
     pub(in crate::technique) selector: [f32; 4],
     pub(in crate::technique) depth_sign: f32,
     pub(in crate::technique) blend_per_m: f32,
-    pub(in crate::technique) padding: [u32; 2],
+    pub(in crate::technique) edge_rad: f32,
+    pub(in crate::technique) padding: u32,
 }
