@@ -45,7 +45,7 @@ test: setup oracle ## format, lints, documentation and every test
 	cd oracle && .venv/bin/python -m pytest
 	@echo '==> tests'
 	mkdir -p out
-	set -o pipefail; $(CARGO) test --locked | tee out/test.log
+	set -o pipefail; $(CARGO) test --locked --no-fail-fast | tee out/test.log
 	@awk '/^test result:/ { suites++; for (i = 2; i <= NF; i++) { \
 	        if ($$i ~ /^passed/) passed += $$(i - 1); if ($$i ~ /^ignored/) ignored += $$(i - 1) } } \
 	    END { printf "==> %d tests passed in %d suites, %d ignored; log: out/test.log\n", passed, suites, ignored; \

@@ -80,6 +80,7 @@ impl<'t, 'v> Answered<'t, 'v> {
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(phases);
         run.motion = Motion::of(&moved.of_camera, &moved.of_light);
+        run.seams = evaluation.seams(run.wrong_above);
         run.budget = self.task.limits.outcome(&evaluation.verdict, run.jitter);
         run
     }

@@ -26,8 +26,8 @@ pub use view::{Oracle, Question, TruthStore, View};
 use crate::cause::Replay;
 use crate::mask::{Mask, Truth, TruthMask};
 use crate::scene::Light;
-use crate::technique::{Cost, Prepared, Spec, TechniqueError};
-use crate::verdict::{Ledger, LedgerError, Verdict, VerdictError, judge, ledger, wrong_above};
+use crate::technique::{Cost, InView, Prepared, Spec, TechniqueError};
+use crate::verdict::{Ledger, LedgerError, Seams, Verdict, VerdictError, judge, ledger, seams, wrong_above};
 use crate::watch::{Interrupted, Watch};
 use std::time::Instant;
 
@@ -59,6 +59,19 @@ pub struct Evaluation<'v> {
     pub ledger: Ledger,
     /// What it cost; without times until it is timed ([`time_evaluations`]).
     pub cost: Cost,
+}
+
+impl Evaluation<'_> {
+    /// The errors by view and by distance to the seam; `None` for techniques with fewer than two views of the light.
+    /// `wrong_above`: the |technique − truth| above which a pixel is wrong.
+    #[must_use]
+    pub fn seams(&self, wrong_above: f64) -> Option<Seams> {
+        let names = self.prepared.view_names();
+        let errors = &self.verdict.signed_error;
+        let place = |(pixel, error): (u32, &Option<f64>)| error.and_then(|_| self.prepared.in_view(pixel));
+        let places: Vec<Option<InView>> = (0..).zip(errors).map(place).collect();
+        (names.len() > 1).then(|| seams(&names, &places, errors, wrong_above))
+    }
 }
 
 impl std::fmt::Debug for Evaluation<'_> {

@@ -4,9 +4,10 @@
 //! what the figures leave. Every block has the same column widths.
 
 use super::Report;
-use super::format::{grouped, percent, printable, wrapped};
+use super::format::{NOTHING, grouped, percent, printable, wrapped};
 use super::model::Run;
 use super::summary::{BUDGET_NOTE, Summary, software_note};
+use crate::verdict::{BinError, ViewError};
 use comfy_table::{
     Cell, CellAlignment, ColumnConstraint, ContentArrangement, ContentLineStyle, LineStyle, Table, Width,
 };
@@ -40,7 +41,7 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
-        for line in runs.iter().flat_map(|run| [jitter(run), motion(run)]).flatten() {
+        for line in runs.iter().flat_map(|run| [seams(run), jitter(run), motion(run)]).flatten() {
             wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
         }
         text.push('\n');
@@ -67,6 +68,28 @@ fn block(runs: &[Run], rows: &[[String; 6]], widths: [u16; 6]) -> String {
         text.push_str(&format!("{}  {}: {why}\n", printable(&run.typed), Summary::verdictless(run)));
     }
     text
+}
+
+/// Texels around seams that a table tells apart from the rest.
+const NEAR_SEAM_TEXELS: f64 = 2.0;
+
+/// Whether a run with wrong pixels is worse in one of its views, and near seams.
+fn seams(run: &Run) -> Option<String> {
+    let seams = run.seams.as_ref().filter(|_| run.pixels.is_some_and(|pixels| pixels.wrong > 0))?;
+    let fraction = |view: &&ViewError| view.error.wrong_fraction().unwrap_or(0.0);
+    let worst = seams.views.iter().max_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
+    let [near, far] = seams.split_at(NEAR_SEAM_TEXELS);
+    let share = |bin: BinError| bin.wrong_fraction().map_or_else(|| NOTHING.to_owned(), percent);
+    Some(format!(
+        "{}  in the worst of {} views, {}: {} of {} px wrong; within {NEAR_SEAM_TEXELS} texels of a seam {}, beyond {}",
+        printable(&run.typed),
+        seams.views.len(),
+        printable(&worst.name),
+        share(worst.error),
+        grouped(worst.error.asked),
+        share(near),
+        share(far)
+    ))
 }
 
 /// What shifting the texel grid of a run does to its share of wrong pixels.

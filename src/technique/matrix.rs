@@ -17,7 +17,7 @@ pub struct MatrixRow {
     pub spec: String,
     /// Whether it handles the kind of light of the same place in [`light_kinds`]; if not, why.
     pub handles: Vec<Result<(), String>>,
-    /// What an adapter and a scene must have for it; each of the scene's was found by taking it away.
+    /// What an adapter, a scene and a picture must have for it; each of the scene's was found by taking it away.
     pub needs: Vec<&'static str>,
 }
 
@@ -72,7 +72,9 @@ fn row(spec: &Spec, gpu: &Gpu) -> MatrixRow {
         handled.map(|(light, _)| light).any(|light| refusal(lacking, light).is_some())
     };
     let of_adapter = spec.technique().needs_of_adapter().iter().copied();
-    let needs = of_adapter.chain(lacking().into_iter().filter(is_missed).map(|(need, _)| need)).collect();
+    let of_picture = spec.technique().needs_of_picture(spec).iter().copied();
+    let of_scene = lacking().into_iter().filter(is_missed).map(|(need, _)| need);
+    let needs = of_adapter.chain(of_scene).chain(of_picture).collect();
     MatrixRow { spec: spec.short(), handles, needs }
 }
 
@@ -203,6 +205,7 @@ mod tests {
         assert_eq!(planar, ["a [[plane]]", "a receiver on the plane", "the light off the plane"]);
         assert_eq!(needs_of(&rows, "map"), ["receivers within one frustum"]);
         assert_eq!(needs_of(&rows, "volume"), [""; 0]);
+        assert_eq!(needs_of(&rows, "map:projection=perspective").len(), 1, "a need that only a fit can tell");
         assert!(rows.iter().all(|row| row.handles.len() == light_kinds().len()));
     }
 }

@@ -86,6 +86,11 @@ pub trait Technique: Sync {
     fn needs_of_adapter(&self) -> &'static [&'static str] {
         &[]
     }
+    /// What it needs, in words, that [`Technique::supports`] cannot tell: it shows only once the picture is known, and
+    /// preparing is refused then.
+    fn needs_of_picture(&self, _spec: &Spec) -> &'static [&'static str] {
+        &[]
+    }
     /// Whether it can answer for this light in this scene on this adapter.
     ///
     /// # Errors
@@ -150,6 +155,14 @@ pub trait Prepared: Sync {
     /// The projected size of the technique's samples at a receiver; `None` for techniques without samples, and outside
     /// the map.
     fn footprint(&self, pixel: u32) -> Option<Footprint>;
+    /// What people call the views of the light that answer for different pixels; none for techniques without views.
+    fn view_names(&self) -> Vec<String> {
+        Vec::new()
+    }
+    /// Which of them answers for a pixel; `None` for techniques without views.
+    fn in_view(&self, _pixel: u32) -> Option<InView> {
+        None
+    }
     /// World to light clip space for each frustum the light looks through; none for techniques without.
     fn light_frusta(&self) -> Vec<DMat4> {
         Vec::new()
@@ -161,6 +174,15 @@ pub trait Prepared: Sync {
     fn light_depths(&self) -> Result<Option<LightDepths>, TechniqueError> {
         Ok(None)
     }
+}
+
+/// Which of a light's views answers for a pixel, and where in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InView {
+    /// The view's index.
+    pub view: usize,
+    /// How far it is to where another view answers, texels of this view; `None` where none does.
+    pub seam_texels: Option<f64>,
 }
 
 /// What a light's depth map holds.

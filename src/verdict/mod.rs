@@ -15,12 +15,14 @@ mod ledger;
 #[cfg(test)]
 mod ledger_tests;
 mod radiance;
+mod seams;
 
 pub use blobs::{Blob, blobs};
 pub use counts::{EdgeDistance, ErrorStats, PixelCounts, WorstCase};
 pub use judge::{Verdict, VerdictError, judge};
 pub use ledger::{CauseShare, Entry, Ledger, LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
 pub use radiance::{Noise, RADIANCE_TOLERANCE, RadianceDifference, compare_radiance, critical_deviation, near_edges};
+pub use seams::{BinError, DistanceError, Seams, ViewError, seams};
 
 use crate::scene::Light;
 

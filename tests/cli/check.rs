@@ -9,7 +9,7 @@ use tempfile::TempDir;
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// The keys of a run, sorted.
-pub(crate) const RUN_KEYS: [&str; 17] = [
+pub(crate) const RUN_KEYS: [&str; 18] = [
     "budget",
     "causes",
     "command",
@@ -21,6 +21,7 @@ pub(crate) const RUN_KEYS: [&str; 17] = [
     "motion",
     "pixels",
     "scene",
+    "seams",
     "status",
     "technique",
     "truth",

@@ -21,7 +21,21 @@ fn real_report() -> Value {
     let folder = scene_in_temp();
     let budget = "\n[[budget]]\ntechnique = \"map:size=64\"\nwrong_fraction = 0.5\n";
     write_scene(folder.path(), "other", &format!("{}{budget}", crate::support::SCENE));
-    let args = ["check", "scene", "other", "-t", "map:size=64", "-t", "planar", "--jitter", "2", "--out", "out"];
+    let args = [
+        "check",
+        "scene",
+        "other",
+        "-t",
+        "map:size=64",
+        "-t",
+        "planar",
+        "-t",
+        "map:projection=cube,size=64",
+        "--jitter",
+        "2",
+        "--out",
+        "out",
+    ];
     gnomon_in(folder.path(), &args).returns(0);
     report(&folder.path().join("out"))
 }
@@ -33,7 +47,9 @@ fn a_real_report_is_valid_and_a_changed_one_is_not() {
     let status =
         |wanted: &str| report["runs"].as_array().unwrap().iter().position(|run| run["status"] == wanted).unwrap();
     let (ok, unsupported) = (status("ok"), status("unsupported"));
-    assert!(report["runs"].as_array().unwrap().iter().any(|run| !run["budget"].is_null()));
+    assert!(
+        ["budget", "seams"].iter().all(|key| report["runs"].as_array().unwrap().iter().any(|run| !run[key].is_null()))
+    );
     // Controls: each change is one that a reader would stumble over.
     let controls = [
         ("/schema".to_owned(), json!(2)),

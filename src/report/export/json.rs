@@ -36,7 +36,7 @@ mod tests {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    const RUN_KEYS: [&str; 17] = [
+    const RUN_KEYS: [&str; 18] = [
         "scene",
         "light",
         "typed",
@@ -54,6 +54,7 @@ mod tests {
         "budget",
         "jitter",
         "motion",
+        "seams",
     ];
 
     #[test]
@@ -61,8 +62,8 @@ mod tests {
         let text = String::from_utf8(to_json(&report()).unwrap()).unwrap();
         assert_eq!(written_keys(&text, 2), ["schema", "tool", "adapter", "runs"]);
         let run_keys = written_keys(&text, 6);
-        assert_eq!(run_keys.len(), 3 * 17, "every run has every key");
-        assert!(run_keys.chunks(17).all(|keys| keys == RUN_KEYS));
+        assert_eq!(run_keys.len(), 3 * 18, "every run has every key");
+        assert!(run_keys.chunks(18).all(|keys| keys == RUN_KEYS));
 
         let run = &parsed(&report())["runs"][0];
         let mut pixel_keys = keys(&run["pixels"]);
@@ -111,6 +112,9 @@ mod tests {
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
         assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
         assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
+        assert_eq!(run["seams"]["views"][0], json!({"name": "near", "asked": 2, "wrong": 2, "mean_abs": 1.0}));
+        let bin = json!({"from_texels": 2.0, "to_texels": 4.0, "asked": 5, "wrong": 1, "mean_abs": 0.2});
+        assert_eq!(run["seams"]["distances"][2], bin);
     }
 
     #[test]
@@ -118,7 +122,7 @@ mod tests {
         let json = parsed(&report());
         assert_eq!(json["runs"][1]["status"], "unsupported");
         assert_eq!(json["runs"][2]["status"], "failed");
-        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion"] {
+        for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion", "seams"] {
             assert!(json["runs"][0][key].is_object(), "{key}");
             assert!(json["runs"][1][key].is_null() && json["runs"][2][key].is_null(), "{key}");
         }

@@ -3,7 +3,7 @@
 use super::figures::{BudgetOutcome, CauseEntry, Jitter, Motion, TruthSource};
 use crate::cause::Cause;
 use crate::technique::Cost;
-use crate::verdict::{ErrorStats, Ledger, PixelCounts, Verdict};
+use crate::verdict::{ErrorStats, Ledger, PixelCounts, Seams, Verdict};
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -76,10 +76,12 @@ pub struct Run {
     pub jitter: Option<Jitter>,
     /// What flips from frame to frame as camera and light move; null for a run that did not move.
     pub motion: Option<Motion>,
+    /// The errors by view and by distance to the seam; null for techniques with fewer than two views of the light.
+    pub seams: Option<Seams>,
 }
 
 impl Run {
-    /// A run with a verdict. Causes, cost, truth, budget, jitter and motion are null until somebody sets them.
+    /// A run with a verdict. Causes, cost, truth, budget, jitter, motion and seams are null until somebody sets them.
     #[must_use]
     pub fn judged(question: Question, verdict: &Verdict) -> Self {
         Self {
@@ -128,6 +130,7 @@ impl Run {
             budget: None,
             jitter: None,
             motion: None,
+            seams: None,
         }
     }
 }

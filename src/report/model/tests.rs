@@ -4,8 +4,8 @@ use super::*;
 use crate::cause::Cause;
 use crate::mask::{Mask, Truth, TruthMask, Visibility};
 use crate::receiver::PixelClass;
-use crate::technique::{Cost, GpuTime, PassTime};
-use crate::verdict::{CauseShare, Ledger, Verdict, WRONG_ABOVE_HARD, judge};
+use crate::technique::{Cost, GpuTime, InView, PassTime};
+use crate::verdict::{CauseShare, Ledger, Verdict, WRONG_ABOVE_HARD, judge, seams};
 use glam::UVec2;
 
 /// Names that break whoever does not escape them.
@@ -61,6 +61,9 @@ pub(crate) fn full_run(scene: &str) -> Run {
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
     run.motion = Motion::of(&[1, 3], &[0, 2]);
+    let places = [0, 0, 1, 1, 1, 1, 1, 1].map(|view| Some(InView { view, seam_texels: Some(3.0 * view as f64) }));
+    let names = ["near", "far"].map(str::to_owned);
+    run.seams = Some(seams(&names, &places, &verdict.signed_error, WRONG_ABOVE_HARD));
     run
 }
 

@@ -8,6 +8,7 @@ use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
 use crate::scene::{Bounds, Light, Scene, Segment};
+use crate::technique::InView;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
@@ -133,6 +134,13 @@ impl Lookup {
     #[must_use]
     pub fn select(&self, point_in_world: DVec3) -> Shares {
         self.projection.select(&self.views, point_in_world)
+    }
+
+    /// The view that mainly answers for a receiver, and how far it is to its seam.
+    #[must_use]
+    pub fn in_view(&self, point_in_world: DVec3) -> InView {
+        let view = self.select(point_in_world).first;
+        InView { view, seam_texels: self.projection.seam_texels(&self.views, view, point_in_world) }
     }
 
     /// A world point as its own view sees it, through the guard.

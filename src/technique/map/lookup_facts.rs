@@ -27,7 +27,9 @@ pub(super) fn lookup_facts(map: &PreparedMap<'_>, pixel: u32) -> Result<Vec<(Str
             .iter()
             .map(|(view, weight)| format!("{} ({:.0} %)", map.lookup.views[view].name, 100.0 * weight))
             .collect();
-        facts.push(fact("view", named.join(", ")));
+        let seam = map.lookup.in_view(receiver.point_in_world).seam_texels;
+        let seam = seam.map_or_else(String::new, |texels| format!("; {texels:.1} texels from its seam"));
+        facts.push(fact("view", named.join(", ") + &seam));
     }
     facts.extend([
         fact("position in the map", format!("({:.4}, {:.4}) texels", at.x, at.y)),

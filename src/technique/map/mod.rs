@@ -58,6 +58,9 @@ impl Technique for Map {
     fn params(&self) -> &'static [Param] {
         &PARAMS
     }
+    fn needs_of_picture(&self, spec: &Spec) -> &'static [&'static str] {
+        Settings::of(spec).projection.needs_of_picture()
+    }
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
         let settings = Settings::of(spec);
         let has_moments = settings.filter.moments().is_some();

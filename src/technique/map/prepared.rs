@@ -7,7 +7,7 @@ use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
+use crate::technique::{Answer, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
 use glam::{DMat4, DVec2, DVec3, UVec2, Vec4};
 
 pub(super) struct PreparedMap<'j> {
@@ -133,6 +133,14 @@ impl Prepared for PreparedMap<'_> {
         let receiver = self.receiver(pixel)?;
         let site = self.lookup.project(receiver.point_in_world).ok()?;
         texel_footprint(&self.job, &site, &receiver)
+    }
+
+    fn view_names(&self) -> Vec<String> {
+        self.lookup.views.iter().map(|view| view.name.clone()).collect()
+    }
+
+    fn in_view(&self, pixel: u32) -> Option<InView> {
+        Some(self.lookup.in_view(self.receiver(pixel)?.point_in_world))
     }
 
     fn light_frusta(&self) -> Vec<DMat4> {

@@ -102,6 +102,28 @@ impl Projection for Cascaded {
             _ => Shares::one(own),
         }
     }
+
+    /// Across a split by depth, as `blend_texels` counts; by projection, along the map to where an earlier view ends, or
+    /// this one if there is a later.
+    fn seam_texels(&self, views: &[View], view: usize, point_in_world: DVec3) -> Option<f64> {
+        let by_projection = |other: usize| {
+            let from_border = (views[other].project(point_in_world).uv - 0.5).abs() - 0.5;
+            // Beyond the border the nearest of its sides counts, or its corner; within it the nearest of its sides.
+            let beyond = from_border.max(DVec2::ZERO).length();
+            let distance = if beyond > 0.0 { beyond } else { -from_border.max_element() };
+            distance * f64::from(views[other].texels.x) * texel_m(&views[other]) / texel_m(&views[view])
+        };
+        let by_depth = |split: usize| {
+            let past_m = views[split].selector.as_dvec4().dot(point_in_world.extend(1.0));
+            past_m.abs() / texel_m(&views[view])
+        };
+        let last = views.len() - 1;
+        if views[0].selector == glam::Vec4::ZERO {
+            (0..=view).filter(|other| *other < last).map(by_projection).reduce(f64::min)
+        } else {
+            [view, view + 1].into_iter().filter(|split| (1..=last).contains(split)).map(by_depth).reduce(f64::min)
+        }
+    }
 }
 
 fn direction(light: &Light) -> Result<DVec3, Unsupported> {

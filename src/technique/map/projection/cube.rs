@@ -108,6 +108,15 @@ impl Projection for Cube {
         }
         Shares::one(best)
     }
+
+    /// Along the tangent that reaches 1 on the nearest side.
+    fn seam_texels(&self, views: &[View], view: usize, point_in_world: DVec3) -> Option<f64> {
+        let along = |view: &View| view.selector.as_dvec4().dot(point_in_world.extend(1.0));
+        let others = views.iter().enumerate().filter(|(i, _)| *i != view);
+        let nearest = others.map(|(_, other)| along(other)).reduce(f64::max)?;
+        let half = 0.5 * f64::from(views[view].texels.x) / HALF_WIDTH;
+        Some(half * (1.0 - nearest / along(&views[view])))
+    }
 }
 
 /// Where the light is.

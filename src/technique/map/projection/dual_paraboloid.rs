@@ -8,7 +8,7 @@
 
 use super::drawn::Drawn;
 use super::fit::look;
-use super::paraboloid::{Paraboloid, least_cosine};
+use super::paraboloid::{Paraboloid, least_cosine, rim_texels};
 use super::pieces::Cut;
 use super::{LightFrustum, Projection, Shape, Shares, View, Window, cube};
 use crate::gpu::shader::{Wgsl, wgsl};
@@ -91,6 +91,11 @@ impl Projection for DualParaboloid {
     fn select(&self, views: &[View], point_in_world: DVec3) -> Shares {
         let before = views[0].selector.as_dvec4().dot(point_in_world.extend(1.0));
         Shares::one(usize::from(before < 0.0 && views.len() > 1))
+    }
+
+    fn seam_texels(&self, views: &[View], view: usize, point_in_world: DVec3) -> Option<f64> {
+        let from_rim = rim_texels(&views[view], point_in_world);
+        (views.len() > 1).then_some(from_rim)
     }
 }
 

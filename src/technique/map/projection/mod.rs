@@ -80,6 +80,10 @@ pub trait Projection: Sync {
     /// # Errors
     /// The typed reason why not.
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported>;
+    /// What it needs, in words, that only a fit can tell.
+    fn needs_of_picture(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// The views, at least one. `visible` are the asked receivers of the picture, for fits that follow the camera.
     ///
     /// # Errors
@@ -94,6 +98,11 @@ pub trait Projection: Sync {
     /// The views that answer for a world point; the f64 twin of `select_views`.
     fn select(&self, _views: &[View], _point_in_world: DVec3) -> Shares {
         Shares::one(0)
+    }
+    /// How far a world point is from where another view than `view`, which answers for it, would: texels of `view`.
+    /// `None` where there is no other.
+    fn seam_texels(&self, _views: &[View], _view: usize, _point_in_world: DVec3) -> Option<f64> {
+        None
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::homogeneous::{BEYOND, POSITION_ROUNDING};
 use super::site::Site;
-use super::view::{Gradients, InMap, Layout, Rows, apply};
+use super::view::{Gradients, InMap, Layout, Rows, View, apply};
 use crate::scene::{Bounds, Segment};
 use glam::{DMat3, DVec2, DVec3, IVec2, UVec2, Vec4};
 
@@ -34,6 +34,12 @@ pub(super) fn least_cosine(texels: UVec2) -> f64 {
 /// Radius on the disc up to which texel centres belong to a view.
 fn held_radius(texels: f64) -> f64 {
     1.0 + 2.0 * HELD_TEXELS / texels
+}
+
+/// How far a world point lies from the rim of a view's disc, texels; negative beyond it.
+pub(super) fn rim_texels(view: &View, point_in_world: DVec3) -> f64 {
+    let on_disc = (view.project(point_in_world).uv - 0.5) / MAP_FROM_DISC;
+    (1.0 - on_disc.length()) * 0.5 * f64::from(view.texels.x) / RIM
 }
 
 /// A world point as seen from the light.
@@ -126,7 +132,7 @@ impl Layout for Paraboloid {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::technique::map::projection::{LightFrustum, Shape, View, Window};
+    use crate::technique::map::projection::{LightFrustum, Shape, Window};
     use crate::technique::map::settings::DepthMetric;
     use glam::DMat4;
 

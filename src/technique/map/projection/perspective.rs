@@ -39,6 +39,10 @@ impl Projection for Perspective {
         Ok(())
     }
 
+    fn needs_of_picture(&self) -> &'static [&'static str] {
+        &["a light that is not among what is seen"]
+    }
+
     fn fit(
         &self,
         scene: &Scene,
