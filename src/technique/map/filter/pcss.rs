@@ -46,9 +46,6 @@ impl Filter for Pcss {
     fn texel_reads(&self, kernel: &Kernel) -> u32 {
         kernel.search_taps + kernel.number
     }
-    fn texel_reads(&self, kernel: &Kernel) -> u32 {
-        kernel.search_taps + kernel.number
-    }
     fn reads_map(&self) -> bool {
         true
     }
