@@ -77,6 +77,15 @@ impl Gpu {
         self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
+    /// Resources bound by number, for shaders that use some of many.
+    pub(crate) fn bind_at(&self, layout: &BindGroupLayout, resources: &[(u32, BindingResource<'_>)]) -> BindGroup {
+        let entries: Vec<BindGroupEntry<'_>> = resources
+            .iter()
+            .map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
+        self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
     /// A compute pipeline.
     pub(crate) fn compute_pipeline(&self, label: &str, files: &[Wgsl]) -> ComputePipeline {
         self.device.create_compute_pipeline(&ComputePipelineDescriptor {

@@ -23,11 +23,11 @@ fn select_views(point_in_world: vec3f) -> Shares {
 }
 
 fn place_on_curve(cell: vec2u) -> u32 {
-    return spread(cell.x) | (spread(cell.y) << 1u);
+    return bits_apart(cell.x) | (bits_apart(cell.y) << 1u);
 }
 
 // The bits of a number, each followed by a zero.
-fn spread(number: u32) -> u32 {
+fn bits_apart(number: u32) -> u32 {
     var bits = (number | (number << 8u)) & 0x00ff00ffu;
     bits = (bits | (bits << 4u)) & 0x0f0f0f0fu;
     bits = (bits | (bits << 2u)) & 0x33333333u;

@@ -1,6 +1,9 @@
 //! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
+use super::filter::moments::Storage;
 use super::lookup::Lookup;
+use super::midpoint::{MIDPOINT, MidpointPass};
+use super::moment_passes::{self, MomentPasses};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
@@ -8,17 +11,21 @@ use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Mat4, Vec4};
+use glam::{DVec3, DVec4, Mat4, Vec4};
 use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
     DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
-    RenderPipeline, StoreOp, Texture, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
+    RenderPipeline, StoreOp, Texture, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    TextureViewDimension,
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
-const CASTER_DEPTH: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_rows.wgsl")];
-const CASTER_PARABOLOID: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_paraboloid.wgsl")];
+const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const CASTER_ROWS: Wgsl = wgsl!("map/caster_rows.wgsl");
+const CASTER_PARABOLOID: Wgsl = wgsl!("map/caster_paraboloid.wgsl");
+const NEAREST_LAYER: Wgsl = wgsl!("map/nearest_layer.wgsl");
+const SECOND_LAYER: Wgsl = wgsl!("map/second_layer.wgsl");
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
 const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
@@ -40,13 +47,24 @@ fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 6] {
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![
         ("map caster".to_owned(), vec![CASTER]),
-        ("map caster depth".to_owned(), CASTER_DEPTH.to_vec()),
-        ("map caster paraboloid".to_owned(), CASTER_PARABOLOID.to_vec()),
+        ("map caster depth".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, NEAREST_LAYER]),
+        ("map caster paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, NEAREST_LAYER]),
+        ("map second layer".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, SECOND_LAYER]),
+        ("map second layer paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, SECOND_LAYER]),
+        ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
+        ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
     let single = projection::by_name("single");
     modules.push(("silhouette lookup".to_owned(), [&shared_files(single)[..], &[WEDGES]].concat()));
+    for filter in filter::registry() {
+        for (moments, is_half) in filter.moments().into_iter().flat_map(|moments| [(moments, false), (moments, true)]) {
+            let [rows, columns] = Storage::of(moments.count(), is_half).modules(filter.shader());
+            let label = |axis: &str| format!("map moments by {axis} {} half={is_half}", filter.choice().name);
+            modules.extend([(label("rows"), rows), (label("columns"), columns)]);
+        }
+    }
     for projection in projection::registry() {
         for filter in filter::registry() {
             let label = format!("map lookup {} {}", projection.name(), filter.choice().name);
@@ -79,15 +97,18 @@ struct CasterUniform {
 pub(super) struct MapPasses {
     map: Texture,
     layers: Vec<Layer>,
+    /// What makes the map of two others, for a map that stores the middle between two surfaces.
+    midpoint: Option<MidpointPass>,
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
+    moments: Option<MomentPasses>,
     buffer_bytes: u64,
     texel_reads: u32,
 }
 
 /// How one view is drawn.
-struct Layer {
+pub(super) struct Layer {
     target: TextureView,
     pipeline: RenderPipeline,
     bindings: BindGroup,
@@ -122,23 +143,37 @@ impl MapPasses {
                 None => lookup_files(settings.projection, settings.filter),
             };
             let lookup_pipeline = gpu.compute_pipeline("map lookup", &files);
+            let midpoint = settings.stores_midpoint().then(|| MidpointPass::new(gpu, settings, lookup, &map));
+            let nearest = midpoint.as_ref().map_or(&map, MidpointPass::nearest);
+            let layers = layers(gpu, settings, lookup, nearest, None);
             let all_layers = all_layers(&map);
             let points = silhouettes.map(|edges| PointPass::new(gpu, lookup.texels(), &views, &all_layers, edges));
-            let layers = layers(gpu, settings, lookup, &map);
+            let moments = settings
+                .filter
+                .moments()
+                .zip(numbers.as_ref())
+                .map(|(moments, numbers)| MomentPasses::new(gpu, settings, moments, lookup, &all_layers, numbers));
+            let means = moments.as_ref().map(MomentPasses::view);
             let bind = |chunk: &Chunk| {
-                let mut resources = vec![
-                    chunk.receivers.as_entire_binding(),
-                    chunk.visibilities.as_entire_binding(),
-                    uniform.as_entire_binding(),
-                    BindingResource::TextureView(&all_layers),
-                    views.as_entire_binding(),
+                let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
+                    (0, chunk.receivers.as_entire_binding()),
+                    (1, chunk.visibilities.as_entire_binding()),
+                    (2, uniform.as_entire_binding()),
+                    (4, views.as_entire_binding()),
                 ];
-                resources.extend(numbers.as_ref().map(Buffer::as_entire_binding));
-                resources.extend(points.as_ref().map(|points| BindingResource::TextureView(&points.view)));
-                gpu.bind(&lookup_pipeline.get_bind_group_layout(0), &resources)
+                // In place of depths.
+                match &means {
+                    Some(means) => resources.push((6, BindingResource::TextureView(means))),
+                    None => resources.push((3, BindingResource::TextureView(&all_layers))),
+                }
+                resources.extend(numbers.as_ref().map(|numbers| (5, numbers.as_entire_binding())));
+                resources.extend(points.as_ref().map(|points| (5, BindingResource::TextureView(&points.view))));
+                gpu.bind_at(&lookup_pipeline.get_bind_group_layout(0), &resources)
             };
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
+                    + midpoint.as_ref().map_or(0, MidpointPass::bytes)
+                    + moments.as_ref().map_or(0, MomentPasses::bytes)
                     + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
@@ -146,10 +181,12 @@ impl MapPasses {
                     + layers.iter().filter_map(|layer| layer.pieces.as_ref()).map(Buffer::size).sum::<u64>(),
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers,
+                midpoint,
                 texel_reads: texel_reads(settings, silhouettes.is_some()),
                 map,
                 lookup_pipeline,
                 points,
+                moments,
             }
         })
     }
@@ -163,9 +200,15 @@ impl MapPasses {
     ) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow map", || {
             let mut recorder = Recorder::new(gpu);
-            self.record_layers(&mut recorder, geometry);
+            record_layers(&mut recorder, "map", &self.layers, geometry);
+            if let Some(midpoint) = &self.midpoint {
+                midpoint.record(&mut recorder, geometry);
+            }
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
+            }
+            if let Some(moments) = &self.moments {
+                moments.record(gpu, &mut recorder);
             }
             let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
             receivers
@@ -179,37 +222,25 @@ impl MapPasses {
     pub(super) fn draw(&self, gpu: &Gpu, geometry: &Geometry) -> Result<(), GpuError> {
         let recorder = gpu.scoped("recording a map to be read back", || {
             let mut recorder = Recorder::new(gpu);
-            self.record_layers(&mut recorder, geometry);
+            record_layers(&mut recorder, "map", &self.layers, geometry);
             recorder
         })?;
         recorder.finish("a map to be read back").map(drop)
     }
 
-    fn record_layers(&self, recorder: &mut Recorder<'_>, geometry: &Geometry) {
-        for layer in &self.layers {
-            let depth = RenderPassDepthStencilAttachment {
-                view: &layer.target,
-                depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
-                stencil_ops: None,
-            };
-            let no_color = if layer.writes_depth { &[None][..] } else { &[] };
-            recorder.render("map", no_color, Some(depth), |pass| {
-                pass.set_pipeline(&layer.pipeline);
-                pass.set_bind_group(0, &layer.bindings, &[]);
-                match &layer.pieces {
-                    Some(corners) => {
-                        pass.set_vertex_buffer(0, corners.slice(..));
-                        pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
-                    }
-                    None => geometry.draw_casters(pass),
-                }
-            });
-        }
-    }
-
     /// The outline's points that the last run drew; `None` for a map without silhouettes.
     pub(super) fn points(&self, gpu: &Gpu) -> Result<Option<Points>, GpuError> {
         self.points.as_ref().map(|points| points.read(gpu)).transpose()
+    }
+
+    /// How many means of moments the last run could not store; `None` without moments.
+    pub(super) fn overflowed(&self, gpu: &Gpu) -> Result<Option<u32>, GpuError> {
+        self.moments.as_ref().map(|moments| moments.overflowed(gpu)).transpose()
+    }
+
+    /// The means of moments at some places (column, row, layer, 0), as the GPU holds them; none without moments.
+    pub(super) fn gather_means(&self, gpu: &Gpu, places: &[[u32; 4]]) -> Result<Vec<DVec4>, GpuError> {
+        self.moments.as_ref().map_or_else(|| Ok(Vec::new()), |moments| moments.gather(gpu, places))
     }
 
     /// The stored depths of some texels, by index, as the GPU holds them.
@@ -262,25 +293,63 @@ fn all_layers(map: &Texture) -> TextureView {
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
+/// Draws the casters into every view's layer.
+pub(super) fn record_layers(recorder: &mut Recorder<'_>, name: &'static str, layers: &[Layer], geometry: &Geometry) {
+    for layer in layers {
+        let depth = RenderPassDepthStencilAttachment {
+            view: &layer.target,
+            depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
+            stencil_ops: None,
+        };
+        let no_color = if layer.writes_depth { &[None][..] } else { &[] };
+        recorder.render(name, no_color, Some(depth), |pass| {
+            pass.set_pipeline(&layer.pipeline);
+            pass.set_bind_group(0, &layer.bindings, &[]);
+            match &layer.pieces {
+                Some(corners) => {
+                    pass.set_vertex_buffer(0, corners.slice(..));
+                    pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
+                }
+                None => geometry.draw_casters(pass),
+            }
+        });
+    }
+}
+
+/// One layer of a texture.
+pub(super) fn layer_view(map: &Texture, index: u32) -> TextureView {
+    map.create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2),
+        base_array_layer: index,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+/// How every view is drawn into its layer of `map`: everything, or what lies behind the layers of another map.
+pub(super) fn layers(
+    gpu: &Gpu,
+    settings: &Settings,
+    lookup: &Lookup,
+    map: &Texture,
+    behind: Option<&Texture>,
+) -> Vec<Layer> {
     let mut pipelines: Vec<(Raster, RenderPipeline)> = Vec::new();
     let layer = |(index, view): (u32, &View)| {
         let raster = Raster::of(settings, lookup, view);
         let known = pipelines.iter().find(|(known, _)| *known == raster).map(|(_, pipeline)| pipeline.clone());
         let pipeline = known.unwrap_or_else(|| {
-            let built = raster.pipeline(gpu, settings, lookup);
+            let built = raster.pipeline(gpu, settings, lookup, map.format(), behind.is_some());
             pipelines.push((raster, built.clone()));
             built
         });
         let uniform = gpu.uniform("caster", caster_uniform(settings, lookup, view));
+        let nearer = behind.map(|nearer| layer_view(nearer, index));
+        let mut resources = vec![uniform.as_entire_binding()];
+        resources.extend(nearer.as_ref().map(BindingResource::TextureView));
         Layer {
-            target: map.create_view(&TextureViewDescriptor {
-                dimension: Some(TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            }),
-            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()]),
+            target: layer_view(map, index),
+            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &resources),
             pipeline,
             clear_depth: view.cleared() as f32,
             pieces: view.drawn.as_ref().map(|drawn| piece_corners(gpu, drawn)),
@@ -344,19 +413,24 @@ impl Raster {
             on_disc,
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: has_own_depth || (!on_disc && view.rows.depth_q != view.rows.q),
+            writes_depth: has_own_depth || settings.stores_midpoint() || (!on_disc && view.rows.depth_q != view.rows.q),
         }
     }
 
-    fn pipeline(&self, gpu: &Gpu, settings: &Settings, lookup: &Lookup) -> RenderPipeline {
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        settings: &Settings,
+        lookup: &Lookup,
+        format: TextureFormat,
+        is_second: bool,
+    ) -> RenderPipeline {
+        let placed = if self.on_disc { CASTER_PARABOLOID } else { CASTER_ROWS };
+        let own_depth = [CASTER_DEPTH, placed, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: match (self.on_disc, self.writes_depth) {
-                (true, _) => &CASTER_PARABOLOID,
-                (false, true) => &CASTER_DEPTH,
-                (false, false) => &[CASTER],
-            },
+            files: if self.writes_depth || self.on_disc { &own_depth } else { &[CASTER] },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },
@@ -369,7 +443,7 @@ impl Raster {
                 ..PrimitiveState::default()
             },
             depth_stencil: Some(DepthStencilState {
-                format: settings.format.texture_format(),
+                format,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(if self.depth_sign > 0.0 {
                     CompareFunction::Less

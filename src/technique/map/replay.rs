@@ -2,8 +2,10 @@
 //! texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
 //! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
 
-use super::exact_texels::{ExactTexel, Surface, drawn_in_pieces};
+use super::bias::Clearance;
+use super::exact_texels::{ExactTexel, cast, drawn_in_pieces, held};
 use super::lookup::{Lookup, Outside, Placed, Tap};
+use super::means::Means;
 use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
 use super::reading::{Depths, Looked, Reading, place};
@@ -37,9 +39,11 @@ struct Blocker {
 }
 
 /// Stage names in order.
-const STAGES: [&str; 7] = ["coverage", "bias", CHORDS, "sampling", "filter", "stored texels", "gpu"];
+const STAGES: [&str; 8] = ["coverage", "bias", CHORDS, "sampling", "filter", MOMENTS, "stored texels", "gpu"];
 /// The stage of maps that are drawn in pieces.
 const CHORDS: &str = "chords";
+/// The stage of filters that average moments.
+const MOMENTS: &str = "moments";
 
 pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
     let replayer = Replayer::new(map, pixels)?;
@@ -51,7 +55,11 @@ pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Re
         causes: replayed.iter().map(|(_, steps)| steps[index].cause).collect(),
     };
     let in_pieces = map.lookup.views.iter().any(|view| view.drawn.is_some());
-    let is_there = |(_, name): &(usize, &str)| in_pieces || *name != CHORDS;
+    let is_there = |(_, name): &(usize, &str)| match *name {
+        CHORDS => in_pieces,
+        MOMENTS => replayer.means.is_some(),
+        _ => true,
+    };
     Ok(Replay {
         pixels: pixels.to_vec(),
         exact: replayed.iter().map(|(exact, _)| *exact).collect(),
@@ -65,13 +73,14 @@ pub(super) struct Replayer<'r> {
     /// The lookup without any bias: what the bias is to blame for, it gets right.
     unbiased: Lookup,
     pub(super) reading: Reading<'r>,
+    means: Option<Means<'r>>,
 }
 
 impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
         let reading = Reading::new(map, &unbiased, pixels)?;
-        Ok(Self { map, unbiased, reading })
+        Ok(Self { map, unbiased, reading, means: Means::read(map, pixels)? })
     }
 
     /// The exact answer at a pixel and what each stage makes of it.
@@ -83,9 +92,9 @@ impl<'r> Replayer<'r> {
         let shares = self.map.lookup.select(receiver.point_in_world);
         let in_views: Vec<(f64, Chain)> =
             shares.iter().map(|(view, weight)| (weight, self.chain(pixel, &receiver, &hits, view))).collect();
-        let [coverage, bias, chords, sampling, filter, stored_texels] = blended(exact, &in_views);
         let gpu = Step { value: answered, cause: Cause::Precision };
-        Some((exact, [coverage, bias, chords, sampling, filter, stored_texels, gpu]))
+        let chain = blended(exact, &in_views);
+        Some((exact, std::array::from_fn(|stage| chain.get(stage).copied().unwrap_or(gpu))))
     }
 
     /// What each stage before the GPU's makes of a receiver in one view.
@@ -99,7 +108,7 @@ impl<'r> Replayer<'r> {
         let Some(placed) = placed else {
             // Moved out along its normal.
             let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
-            return [coverage, border, border, border, border, Step { cause: Cause::Precision, ..border }];
+            return [coverage, border, border, border, border, border, Step { cause: Cause::Precision, ..border }];
         };
         let biased = self.biased(receiver, &placed);
         // Only a blocker that the bias took away asks for the reason.
@@ -109,8 +118,9 @@ impl<'r> Replayer<'r> {
         let looked = self.looked(pixel, receiver, placed);
         let sampling = self.sampling(&looked);
         let filter = self.filter(&looked, sampling.value);
+        let moments = self.moments(&looked, filter);
         let stored_texels = Step { value: self.by_stored_texels(&looked), cause: Cause::Precision };
-        [coverage, Step { value: biased, cause }, chords, sampling, filter, stored_texels]
+        [coverage, Step { value: biased, cause }, chords, sampling, filter, moments, stored_texels]
     }
 
     fn looked(&self, pixel: u32, receiver: &Receiver, placed: Placed) -> Looked<'_> {
@@ -125,10 +135,10 @@ impl<'r> Replayer<'r> {
             Outside::Frustum => Cause::ClippingFrustum,
         };
         let border = self.map.lookup.border_visibility();
-        let exact = stretched.map_or(border, |looked| self.filter(&looked, border).value);
+        let exact = stretched.map_or(border, |looked| self.moments(&looked, self.filter(&looked, border)).value);
         let stored = stretched.map_or(border, |looked| self.by_stored_texels(&looked));
         let clipped = Step { value: exact, cause };
-        [clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
+        [clipped, clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -159,6 +169,11 @@ impl<'r> Replayer<'r> {
     fn biased(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let scene = self.map.job.scene;
+        if lookup.bias.clearance == Clearance::Midpoint {
+            let surfaces = cast(scene, self.map.job.casters, lookup, placed.view, placed.position_in_texels);
+            let stored = held(lookup, placed.view, &surfaces).depth;
+            return visibility(lookup.is_lit(placed.view, placed.reference, stored));
+        }
         let blocks = |hit: &Blocker| {
             let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
             drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {
@@ -174,11 +189,8 @@ impl<'r> Replayer<'r> {
     fn by_chords(&self, placed: &Placed) -> Option<f64> {
         let lookup = &self.map.lookup;
         let surfaces = drawn_in_pieces(lookup, placed.view, placed.position_in_texels)?;
-        let blocks = |surface: &Surface| {
-            let depth = (surface.depth + surface.bias).clamp(0.0, 1.0);
-            !lookup.is_lit(placed.view, placed.reference, depth)
-        };
-        Some(visibility(!surfaces.iter().any(blocks)))
+        let stored = held(lookup, placed.view, &surfaces).depth;
+        Some(visibility(lookup.is_lit(placed.view, placed.reference, stored)))
     }
 
     /// Why the blocker is lost that the bias reaches over: the bias, if the map would show it without any; if not, the
@@ -218,8 +230,19 @@ impl<'r> Replayer<'r> {
         Step { value, cause: if is_self { self_cause } else { Cause::FilterWidth } }
     }
 
-    /// The filter's answer with the depths that the GPU holds.
+    /// What the exact moments of the same kernel allow: more light than there is bleeds in, less is the model's doing.
+    fn moments(&self, looked: &Looked<'_>, filter: Step) -> Step {
+        let Some(means) = &self.means else { return filter };
+        let value = means.exact_visibility(&self.reading, looked);
+        let cause = if value > filter.value { Cause::LightBleeding } else { Cause::TechniqueModel };
+        Step { value, cause }
+    }
+
+    /// The filter's answer with the depths, or the means of moments, that the GPU holds.
     fn by_stored_texels(&self, looked: &Looked<'_>) -> f64 {
+        if let Some(means) = &self.means {
+            return means.stored_visibility(looked);
+        }
         self.reading.mean(Depths::Stored, looked, &mut |tap, _| self.answer(Depths::Stored, looked, tap))
     }
 

@@ -4,16 +4,14 @@ use super::Settings;
 use super::lookup::Lookup;
 use super::passes::MapPasses;
 use super::projection::{Scout, View};
-use super::texel_footprint;
+use super::{bias, filter, texel_footprint};
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::{Job, ReceiverBuffer, TechniqueError};
-use glam::Vec4;
 
 /// Scouts for one job.
 pub(super) struct DeviceScout<'s, 'j> {
     pub(super) job: &'s Job<'j>,
     pub(super) settings: &'s Settings,
-    pub(super) numbers: &'s [Vec4],
     pub(super) receivers: &'s ReceiverBuffer,
 }
 
@@ -31,8 +29,15 @@ impl Scout for DeviceScout<'_, '_> {
     fn depths(&self, views: &[View]) -> Result<Vec<Vec<f64>>, TechniqueError> {
         let Some(first) = views.first() else { return Ok(Vec::new()) };
         let texels = first.texels.element_product();
-        let lookup = Lookup::new(views.to_vec(), self.settings, self.job.light);
-        let passes = MapPasses::new(self.job.gpu, self.settings, &lookup, self.numbers, self.receivers, None)?;
+        // Depths alone, as they are drawn.
+        let settings = Settings {
+            filter: filter::by_name("nearest"),
+            kernel: filter::Kernel::wide(1),
+            bias: bias::by_name("none"),
+            ..*self.settings
+        };
+        let lookup = Lookup::new(views.to_vec(), &settings, self.job.light);
+        let passes = MapPasses::new(self.job.gpu, &settings, &lookup, &[], self.receivers, None)?;
         passes.draw(self.job.gpu, self.job.geometry)?;
         let indices: Vec<u32> = (0..texels * views.len() as u32).collect();
         let depths = passes.gather(self.job.gpu, &lookup, &indices)?;

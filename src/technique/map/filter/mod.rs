@@ -3,15 +3,22 @@
 //! Adding one: a file here, a WGSL file of the same stem in `shaders/map/filter/` that defines `filter_visibility`, a
 //! line in [`registry`].
 
+mod depth_mean;
+mod esm;
+mod evsm;
 mod kernel;
+pub(super) mod moments;
+mod msm;
 mod nearest;
 mod pcf_bilinear;
 mod pcf_box;
 mod pcf_poisson;
 mod pcss;
 mod turn;
+mod vsm;
 
 pub use kernel::{Kernel, params};
+pub use moments::Moments;
 
 use super::lookup::Placed;
 use super::projection::View;
@@ -26,7 +33,18 @@ const NUMBERS: Wgsl = wgsl!("map/numbers.wgsl");
 /// Every filter.
 #[must_use]
 pub fn registry() -> &'static [&'static dyn Filter] {
-    &[&nearest::Nearest, &pcf_box::PcfBox, &pcf_bilinear::PcfBilinear, &pcf_poisson::PcfPoisson, &pcss::Pcss]
+    &[
+        &nearest::Nearest,
+        &pcf_box::PcfBox,
+        &pcf_bilinear::PcfBilinear,
+        &pcf_poisson::PcfPoisson,
+        &pcss::Pcss,
+        &vsm::Vsm,
+        &esm::Esm,
+        &evsm::Evsm,
+        &msm::Msm,
+        &depth_mean::DepthMean,
+    ]
 }
 
 /// A filter over comparison results.
@@ -49,6 +67,9 @@ pub trait Filter: Sync {
 
     /// Texels that a lookup reads at most.
     fn texel_reads(&self, kernel: &Kernel) -> u32 {
+        if self.moments().is_some() {
+            return moments::READS;
+        }
         let mut reads = 0;
         self.taps(kernel, DVec2::ZERO, &mut |_, _| reads += 1);
         reads
@@ -61,11 +82,11 @@ pub trait Filter: Sync {
     }
     /// Whether its shader reads the map itself, not only which of its texels are lit.
     fn reads_map(&self) -> bool {
-        false
+        self.moments().is_some()
     }
     /// Whether it reckons with distances, so that depth must be linear.
     fn needs_linear_depth(&self) -> bool {
-        false
+        self.moments().is_some()
     }
     /// Whether it answers for the whole of an area light, not for its centre.
     fn softens(&self) -> bool {
@@ -78,6 +99,10 @@ pub trait Filter: Sync {
     /// What its shader reads as `numbers`, and its twin in [`Asked::numbers`].
     fn numbers(&self, _kernel: &Kernel, _light: &Light) -> Vec<Vec4> {
         Vec::new()
+    }
+    /// What it averages in place of answers, where it does; its kernel is that of `taps` all the same.
+    fn moments(&self) -> Option<&dyn Moments> {
+        None
     }
 }
 

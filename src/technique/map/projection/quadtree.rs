@@ -67,11 +67,11 @@ impl Tile {
 
 /// Place on the curve of a cell of the deepest level; the f64 twin's share of `shaders/map/projection/adaptive.wgsl`.
 pub(super) fn place_on_curve(cell: UVec2) -> u32 {
-    spread(cell.x) | spread(cell.y) << 1
+    bits_apart(cell.x) | bits_apart(cell.y) << 1
 }
 
 /// The bits of a number of [`DEEPEST`] bits, each followed by a zero.
-fn spread(number: u32) -> u32 {
+fn bits_apart(number: u32) -> u32 {
     let bits = (number | number << 8) & 0x00ff_00ff;
     let bits = (bits | bits << 4) & 0x0f0f_0f0f;
     let bits = (bits | bits << 2) & 0x3333_3333;
