@@ -7,6 +7,7 @@ use super::Report;
 use super::format::{NOTHING, grouped, percent, printable, wrapped};
 use super::model::Run;
 use super::summary::{BUDGET_NOTE, Summary, software_note};
+use crate::technique::EffectiveBias;
 use crate::verdict::{BinError, ViewError};
 use comfy_table::{
     Cell, CellAlignment, ColumnConstraint, ContentArrangement, ContentLineStyle, LineStyle, Table, Width,
@@ -113,12 +114,20 @@ fn motion(run: &Run) -> Option<String> {
     Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
 }
 
-/// How far comparisons were really moved, one line for each view.
+/// More views than these are not listed one by one: report.json has them all.
+const LISTED_VIEWS: usize = 8;
+
+/// How far comparisons were really moved, one line for each view; of many views only where it is most.
 fn biases(run: &Run) -> Vec<String> {
     let typed = printable(&run.typed);
     let views = run.bias.as_deref().unwrap_or_default();
     let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
-    views.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect()
+    let line = |bias: &EffectiveBias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told());
+    if views.len() <= LISTED_VIEWS {
+        return views.iter().map(line).collect();
+    }
+    let most = views.iter().max_by(|a, b| a.along_light.m.max.total_cmp(&b.along_light.m.max));
+    most.map(|bias| format!("{}, the most of {} views", line(bias), views.len())).into_iter().collect()
 }
 
 fn heading(runs: &[Run]) -> String {
