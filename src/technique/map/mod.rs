@@ -13,6 +13,7 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod mask_pass;
 mod means;
 mod moment_passes;
 mod offset;
@@ -107,9 +108,10 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
             "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
         ));
     }
-    if settings.filter.moments().is_some() && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
+    let compares_texels = settings.filter.moments().is_none() && !settings.filter.samples();
+    if !compares_texels && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
         return refused(format!(
-            "bias=receiver-plane compares texel by texel, filter={filter} averages before: it needs another bias"
+            "bias=receiver-plane compares texel by texel, which filter={filter} does not: it needs another bias"
         ));
     }
     if settings.filter.softens() && !settings.projection.is_frustum() {

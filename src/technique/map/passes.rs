@@ -2,6 +2,7 @@
 
 use super::filter::moments::Storage;
 use super::lookup::Lookup;
+use super::mask_pass::{EXTREMES, MaskPass};
 use super::moment_passes::{self, MomentPasses};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
@@ -14,8 +15,9 @@ use glam::{DVec3, DVec4, Mat4, Vec4};
 use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
-    DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
-    RenderPipeline, StoreOp, Texture, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
+    DepthStencilState, Face, FilterMode, FrontFace, LoadOp, Operations, PrimitiveState,
+    RenderPassDepthStencilAttachment, RenderPipeline, Sampler, SamplerDescriptor, StoreOp, Texture, TextureUsages,
+    TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
@@ -45,6 +47,7 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         ("map caster depth".to_owned(), CASTER_DEPTH.to_vec()),
         ("map caster paraboloid".to_owned(), CASTER_PARABOLOID.to_vec()),
         ("map gather".to_owned(), vec![GATHER]),
+        ("map depth extremes".to_owned(), vec![EXTREMES]),
         ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
@@ -93,6 +96,7 @@ pub(super) struct MapPasses {
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
     moments: Option<MomentPasses>,
+    mask: Option<MaskPass>,
     buffer_bytes: u64,
     texel_reads: u32,
 }
@@ -141,6 +145,10 @@ impl MapPasses {
                 .zip(numbers.as_ref())
                 .map(|(moments, numbers)| MomentPasses::new(gpu, settings, moments, lookup, &all_layers, numbers));
             let means = moments.as_ref().map(MomentPasses::view);
+            let level = settings.filter.mask_level(&settings.kernel);
+            let mask = level.map(|level| MaskPass::new(gpu, lookup, &all_layers, level));
+            let extremes = mask.as_ref().map(MaskPass::view);
+            let sampler = settings.filter.samples().then(|| comparing_sampler(gpu, lookup));
             let layers = layers(gpu, settings, lookup, &map);
             let bind = |chunk: &Chunk| {
                 let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
@@ -154,6 +162,8 @@ impl MapPasses {
                     Some(means) => resources.push((6, BindingResource::TextureView(means))),
                     None => resources.push((3, BindingResource::TextureView(&all_layers))),
                 }
+                resources.extend(extremes.as_ref().map(|extremes| (6, BindingResource::TextureView(extremes))));
+                resources.extend(sampler.as_ref().map(|sampler| (7, BindingResource::Sampler(sampler))));
                 resources.extend(numbers.as_ref().map(|numbers| (5, numbers.as_entire_binding())));
                 resources.extend(points.as_ref().map(|points| (5, BindingResource::TextureView(&points.view))));
                 gpu.bind_at(&lookup_pipeline.get_bind_group_layout(0), &resources)
@@ -161,6 +171,7 @@ impl MapPasses {
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
                     + moments.as_ref().map_or(0, MomentPasses::bytes)
+                    + mask.as_ref().map_or(0, MaskPass::bytes)
                     + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
@@ -173,6 +184,7 @@ impl MapPasses {
                 lookup_pipeline,
                 points,
                 moments,
+                mask,
             }
         })
     }
@@ -207,6 +219,9 @@ impl MapPasses {
             }
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
+            }
+            if let Some(mask) = &self.mask {
+                mask.record(&mut recorder);
             }
             if let Some(moments) = &self.moments {
                 moments.record(gpu, &mut recorder);
@@ -282,6 +297,18 @@ fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
 fn all_layers(map: &Texture) -> TextureView {
     let dimension = Some(TextureViewDimension::D2Array);
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
+}
+
+/// Compares with the four texels around a place and weighs the answers. Equality is lit.
+fn comparing_sampler(gpu: &Gpu, lookup: &Lookup) -> Sampler {
+    let is_forward = lookup.views[0].depth_sign > 0.0;
+    gpu.device.create_sampler(&SamplerDescriptor {
+        label: Some("comparing"),
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        compare: Some(if is_forward { CompareFunction::LessEqual } else { CompareFunction::GreaterEqual }),
+        ..SamplerDescriptor::default()
+    })
 }
 
 fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
