@@ -6,13 +6,14 @@
 mod support;
 
 use glam::DVec3;
+use gnomon::cause::Cause;
 use gnomon::mask::{Truth, Visibility};
 use gnomon::scene::Scene;
 use gnomon::technique::map::{Lookup, Settings};
 use support::scenes::{scene_of_texts, shipped};
 use support::shot::{Shot, parsed};
 
-const DERIVED: [&str; 3] = ["closed-form", "normal", "receiver-plane"];
+const DERIVED: [&str; 4] = ["closed-form", "normal", "receiver-plane", "midpoint"];
 const FILTERS: [&str; 5] = ["nearest", "pcf-box4", "pcf-box5", "pcf-bilinear3", "pcf-poisson16"];
 
 /// A plane that leans along no axis, under a sun and a lamp straight above; the light's tilt to it is `tilt_deg`.
@@ -137,4 +138,37 @@ fn a_contact_comes_undone_by_what_moves_the_comparison_along_the_light() {
         println!("{unmoved}: lit up to {lit_m:.4} m");
         assert!(lit_m <= pixel_m + 2.0 * texel_m, "{unmoved}: {lit_m}");
     }
+}
+
+/// A plate over a floor, which casts or does not.
+fn plate_over_floor(floor_casts: bool) -> Scene {
+    let scene = format!(
+        "about = \"a plate over a floor\"\nsize = [192, 144]\n\
+         [camera]\neye = [0, 7, 4]\ntarget = [0, 0, 0]\n\
+         [[mesh]]\nfile = \"model.obj\"\nobjects = [\"Floor\"]\ncasts = {floor_casts}\n\
+         [[mesh]]\nfile = \"model.obj\"\nobjects = [\"Plate\"]\n\
+         [[light]]\nname = \"sun\"\nkind = \"directional\"\ndirection = [0.2, -1, -0.3]\n"
+    );
+    let model = "o Floor\nv -4 0 -4\nv -4 0 4\nv 4 0 4\nv 4 0 -4\nf 1 2 3 4\n\
+                 o Plate\nv -1 1 -1\nv -1 1 1\nv 1 1 1\nv 1 1 -1\nf 5 6 7 8\n";
+    scene_of_texts(&scene, model)
+}
+
+/// The middle lies between the plate and the floor; without a floor in the map there is no middle, and no shadow.
+#[test]
+fn a_midpoint_needs_a_second_surface() {
+    const SIZED: &str = "map:size=256,bias=midpoint";
+    let (with, without) = (plate_over_floor(true), plate_over_floor(false));
+    let (with, without) = (Shot::new(&with, "sun"), Shot::new(&without, "sun"));
+    let of_both = [with.evaluate(SIZED), without.evaluate(SIZED), without.evaluate("map:size=256")];
+    let [by_both, lost, closed_form] = of_both.each_ref().map(|evaluation| &evaluation.ledger.causes);
+    assert!(!by_both.contains_key(&Cause::Acne) && !by_both.contains_key(&Cause::PeterPanning), "{by_both:?}");
+    let shadowed = without.question.truth.mask.pixels.iter().filter(|t| **t == Some(Truth::Known(Visibility::SHADOW)));
+    let (shadowed, wrong) = (shadowed.count() as u64, of_both[1].verdict.pixels.wrong);
+    assert_eq!(wrong, shadowed, "all of the shadow is lost");
+    // Texels at the shadow's edge are coarse either way.
+    assert!(wrong > 100 && lost[&Cause::PeterPanning].pixels * 5 > wrong * 4, "{lost:?}");
+    assert!(!closed_form.contains_key(&Cause::PeterPanning), "{closed_form:?}");
+    let refused = with.evaluate_if_supported(&parsed("map:bias=midpoint,caster_sides=away-facing"));
+    assert!(refused.is_none());
 }

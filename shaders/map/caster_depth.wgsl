@@ -1,6 +1,6 @@
-// Casters with a depth of their own: where u and v are warped but depth is not, and where casters before the near plane
-// must be drawn at it though the device always clips. The rasteriser's bias does not reach such depths, so it is added
-// here. Another file puts the corners in their place.
+// Casters with a depth of their own: where u and v are warped but depth is not, where casters before the near plane must
+// be drawn at it though the device always clips, and where a shader looks at depths. The rasteriser's bias does not reach
+// such depths, so it is added here. Another file puts the corners in their place, a third says which fragments are kept.
 
 struct Caster {
     clip_from_world: mat4x4f,
@@ -28,8 +28,8 @@ struct Corner {
     @location(0) depth: vec2f,
 }
 
-@fragment
-fn fragment(corner: Corner) -> @builtin(frag_depth) f32 {
+// The depth that is stored.
+fn drawn_depth(corner: Corner) -> f32 {
     let depth = corner.depth.x / corner.depth.y;
     let slope = max(abs(dpdx(depth)), abs(dpdy(depth)));
     if caster.clamps == 0u && (depth < 0.0 || depth > 1.0) {

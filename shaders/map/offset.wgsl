@@ -5,6 +5,7 @@ const CLEARANCE_NONE: u32 = 0u;
 const CLEARANCE_CLOSED_FORM: u32 = 1u;
 const CLEARANCE_NORMAL: u32 = 2u;
 const CLEARANCE_RECEIVER_PLANE: u32 = 3u;
+const CLEARANCE_MIDPOINT: u32 = 4u;
 
 // How many texels away the reference must clear the receiver's plane.
 fn own_reach_texels() -> f32 {
@@ -35,7 +36,7 @@ fn bias_depth(view: View, point_in_world: vec3f, normal_in_world: vec3f, at: InM
     let around = gradients(view, point_in_world, at);
     let width = texel_m(around, lookup.texels);
     let along_light = (lookup.depth_m + lookup.depth_texels * max(width.x, width.y)) / metres_per_depth(around);
-    if lookup.clearance == CLEARANCE_NONE {
+    if lookup.clearance == CLEARANCE_NONE || lookup.clearance == CLEARANCE_MIDPOINT {
         return along_light;
     }
     let slope = abs(depth_per_texel(around, normal_in_world, lookup.texels));

@@ -81,6 +81,7 @@ impl<'t, 'v> Answered<'t, 'v> {
         run.jitter = Jitter::of(phases);
         run.motion = Motion::of(&moved.of_camera, &moved.of_light);
         run.seams = evaluation.seams(run.wrong_above);
+        run.bias = Some(evaluation.prepared.bias()).filter(|views| !views.is_empty());
         run.budget = self.task.limits.outcome(&evaluation.verdict, run.jitter);
         run
     }

@@ -41,7 +41,10 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
-        for line in runs.iter().flat_map(|run| [seams(run), jitter(run), motion(run)]).flatten() {
+        let lines = |run: &Run| {
+            [seams(run), jitter(run), motion(run)].into_iter().flatten().chain(biases(run)).collect::<Vec<_>>()
+        };
+        for line in runs.iter().flat_map(lines) {
             wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
         }
         text.push('\n');
@@ -108,6 +111,14 @@ fn motion(run: &Run) -> Option<String> {
     let [camera, light] =
         [motion.camera_flips, motion.light_flips].map(|flips| format!("{:.1} (at most {})", flips.mean, flips.max));
     Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
+}
+
+/// How far comparisons were really moved, one line for each view.
+fn biases(run: &Run) -> Vec<String> {
+    let typed = printable(&run.typed);
+    let views = run.bias.as_deref().unwrap_or_default();
+    let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
+    views.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect()
 }
 
 fn heading(runs: &[Run]) -> String {
@@ -198,6 +209,7 @@ mod tests {
             "1.25*",
             "EXCEEDED",
             "over 2 texel phases: 37.5 % wrong",
+            "map:size=512  bias: 4.00e-2 m = 1.00 texels along the light",
         ] {
             assert!(text.contains(shown), "{shown} in\n{text}");
         }

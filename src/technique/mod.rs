@@ -6,6 +6,7 @@
 //! [`registry`]. Tests, CLI and reports pick it up from there.
 
 mod cost;
+mod effective_bias;
 pub mod footprint;
 pub mod irregular;
 pub mod lighting;
@@ -24,6 +25,7 @@ mod unsupported;
 pub mod volume;
 
 pub use cost::{Cost, GpuTime, PassTime};
+pub use effective_bias::{BiasAt, EffectiveBias, Lengths, Range};
 pub use matrix::{MatrixRow, light_kinds, matrix};
 pub use preset::{PRESETS, Preset};
 pub use receiver_buffer::ReceiverBuffer;
@@ -162,6 +164,10 @@ pub trait Prepared: Sync {
     /// Which of them answers for a pixel; `None` for techniques without views.
     fn in_view(&self, _pixel: u32) -> Option<InView> {
         None
+    }
+    /// How far comparisons are really moved, view by view; none for techniques that compare no depths.
+    fn bias(&self) -> Vec<EffectiveBias> {
+        Vec::new()
     }
     /// World to light clip space for each frustum the light looks through; none for techniques without.
     fn light_frusta(&self) -> Vec<DMat4> {

@@ -9,7 +9,8 @@ use tempfile::TempDir;
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// The keys of a run, sorted.
-pub(crate) const RUN_KEYS: [&str; 18] = [
+pub(crate) const RUN_KEYS: [&str; 19] = [
+    "bias",
     "budget",
     "causes",
     "command",

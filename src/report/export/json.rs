@@ -36,7 +36,7 @@ mod tests {
         keys.map(|(key, _)| key.to_owned()).collect()
     }
 
-    const RUN_KEYS: [&str; 18] = [
+    const RUN_KEYS: [&str; 19] = [
         "scene",
         "light",
         "typed",
@@ -55,6 +55,7 @@ mod tests {
         "jitter",
         "motion",
         "seams",
+        "bias",
     ];
 
     #[test]
@@ -62,8 +63,8 @@ mod tests {
         let text = String::from_utf8(to_json(&report()).unwrap()).unwrap();
         assert_eq!(written_keys(&text, 2), ["schema", "tool", "adapter", "runs"]);
         let run_keys = written_keys(&text, 6);
-        assert_eq!(run_keys.len(), 3 * 18, "every run has every key");
-        assert!(run_keys.chunks(18).all(|keys| keys == RUN_KEYS));
+        assert_eq!(run_keys.len(), 3 * RUN_KEYS.len(), "every run has every key");
+        assert!(run_keys.chunks(RUN_KEYS.len()).all(|keys| keys == RUN_KEYS));
 
         let run = &parsed(&report())["runs"][0];
         let mut pixel_keys = keys(&run["pixels"]);
@@ -115,6 +116,18 @@ mod tests {
         assert_eq!(run["seams"]["views"][0], json!({"name": "near", "asked": 2, "wrong": 2, "mean_abs": 1.0}));
         let bin = json!({"from_texels": 2.0, "to_texels": 4.0, "asked": 5, "wrong": 1, "mean_abs": 0.2});
         assert_eq!(run["seams"]["distances"][2], bin);
+        let of_view = [
+            "acne_free",
+            "along_light",
+            "along_light_depth",
+            "along_normal",
+            "contact_gap",
+            "receivers",
+            "stored",
+            "view",
+        ];
+        assert_eq!(keys(&run["bias"][0]), of_view);
+        assert_eq!(run["bias"][0]["along_light"]["texels"], json!({"min": 1.0, "median": 1.0, "max": 1.0}));
     }
 
     #[test]
@@ -124,6 +137,9 @@ mod tests {
         assert_eq!(json["runs"][2]["status"], "failed");
         for key in ["pixels", "error", "causes", "cost", "truth", "budget", "jitter", "motion", "seams"] {
             assert!(json["runs"][0][key].is_object(), "{key}");
+        }
+        assert!(json["runs"][0]["bias"].is_array());
+        for key in RUN_KEYS.into_iter().skip_while(|key| *key != "pixels") {
             assert!(json["runs"][1][key].is_null() && json["runs"][2][key].is_null(), "{key}");
         }
         assert!(json["runs"][0]["why"].is_null());

@@ -2,7 +2,7 @@
 
 use super::figures::{BudgetOutcome, CauseEntry, Jitter, Motion, TruthSource};
 use crate::cause::Cause;
-use crate::technique::Cost;
+use crate::technique::{Cost, EffectiveBias};
 use crate::verdict::{ErrorStats, Ledger, PixelCounts, Seams, Verdict};
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
@@ -78,10 +78,12 @@ pub struct Run {
     pub motion: Option<Motion>,
     /// The errors by view and by distance to the seam; null for techniques with fewer than two views of the light.
     pub seams: Option<Seams>,
+    /// How far comparisons were really moved, view by view; null for a technique that compares no depths.
+    pub bias: Option<Vec<EffectiveBias>>,
 }
 
 impl Run {
-    /// A run with a verdict. Causes, cost, truth, budget, jitter, motion and seams are null until somebody sets them.
+    /// A run with a verdict. Causes, cost, truth, budget, jitter, motion, seams and bias are null until somebody sets them.
     #[must_use]
     pub fn judged(question: Question, verdict: &Verdict) -> Self {
         Self {
@@ -131,6 +133,7 @@ impl Run {
             jitter: None,
             motion: None,
             seams: None,
+            bias: None,
         }
     }
 }

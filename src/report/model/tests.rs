@@ -4,7 +4,7 @@ use super::*;
 use crate::cause::Cause;
 use crate::mask::{Mask, Truth, TruthMask, Visibility};
 use crate::receiver::PixelClass;
-use crate::technique::{Cost, GpuTime, InView, PassTime};
+use crate::technique::{BiasAt, Cost, EffectiveBias, GpuTime, InView, PassTime};
 use crate::verdict::{CauseShare, Ledger, Verdict, WRONG_ABOVE_HARD, judge, seams};
 use glam::UVec2;
 
@@ -32,6 +32,15 @@ pub(crate) fn question(scene: &str, typed: &str) -> Question {
         wrong_above: WRONG_ABOVE_HARD,
     }
 }
+
+const BIAS: BiasAt = BiasAt {
+    along_light_depth: 0.001,
+    along_light_m: 0.04,
+    along_normal_m: 0.0,
+    acne_free_m: 0.02,
+    contact_gap_m: 0.03,
+    texel_m: 0.04,
+};
 
 /// A judged run with every figure filled in.
 pub(crate) fn full_run(scene: &str) -> Run {
@@ -64,6 +73,7 @@ pub(crate) fn full_run(scene: &str) -> Run {
     let places = [0, 0, 1, 1, 1, 1, 1, 1].map(|view| Some(InView { view, seam_texels: Some(3.0 * view as f64) }));
     let names = ["near", "far"].map(str::to_owned);
     run.seams = Some(seams(&names, &places, &verdict.signed_error, WRONG_ABOVE_HARD));
+    run.bias = EffectiveBias::of("map", &[BIAS]).map(|bias| vec![bias]);
     run
 }
 

@@ -1,7 +1,9 @@
 //! What an ideal rasteriser would store: the exact depth along the ray through each texel's centre, cast in f64; or, in
 //! views that are drawn in straight pieces, what these leave at the texel's centre.
 
+use super::bias::Clearance;
 use super::lookup::Lookup;
+use super::projection::View;
 use crate::cast::{Casters, Hit};
 use crate::scene::Scene;
 use glam::DVec2;
@@ -10,9 +12,9 @@ use rayon::prelude::*;
 /// One texel of the ideal map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::technique) struct ExactTexel {
-    /// Depth with the rasteriser's bias; the cleared value where nothing casts.
+    /// Depth with the rasteriser's bias, or halfway to the next surface behind; the cleared value where nothing casts.
     pub(in crate::technique) depth: f64,
-    /// What the depth would be without the rasteriser's bias.
+    /// What the depth would be without any bias.
     pub(in crate::technique) unbiased_depth: f64,
     /// The triangle it came from.
     pub(in crate::technique) triangle: Option<u32>,
@@ -72,10 +74,16 @@ pub(super) struct Surface {
 
 fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) -> ExactTexel {
     let (view, texel) = lookup.texel_of(index);
-    let cleared = lookup.views[view].cleared();
     let centre = texel.as_dvec2() + 0.5;
     let surfaces = drawn_in_pieces(lookup, view, centre).unwrap_or_else(|| cast(scene, casters, lookup, view, centre));
+    held(lookup, view, &surfaces)
+}
+
+/// What a texel holds at whose centre these surfaces are drawn.
+pub(super) fn held(lookup: &Lookup, view: usize, surfaces: &[Surface]) -> ExactTexel {
+    let cleared = lookup.views[view].cleared();
     let mut texel_holds = ExactTexel { depth: cleared, unbiased_depth: cleared, triangle: None };
+    let mut depths = Vec::new();
     for surface in surfaces {
         let unbiased_depth = surface.depth.clamp(0.0, 1.0);
         let depth = (surface.depth + surface.bias).clamp(0.0, 1.0);
@@ -86,12 +94,33 @@ fn exact_texel(scene: &Scene, casters: &Casters, lookup: &Lookup, index: u32) ->
         if is_nearer(unbiased_depth, texel_holds.unbiased_depth) {
             texel_holds.unbiased_depth = unbiased_depth;
         }
+        depths.push(depth);
+    }
+    if lookup.bias.clearance == Clearance::Midpoint {
+        texel_holds.depth = midpoint(&lookup.views[view], texel_holds.depth, &depths);
     }
     texel_holds
 }
 
+/// The middle between the nearest of some depths and the nearest one behind it, or nothing where there is none.
+fn midpoint(view: &View, nearest: f64, depths: &[f64]) -> f64 {
+    let is_behind = |depth: &&f64| view.depth_sign * (**depth - nearest) > SAME_LAYER * nearest.abs();
+    let behind = depths.iter().filter(is_behind);
+    let second = behind.copied().reduce(|a, b| if view.is_nearer(b, a) { b } else { a });
+    second.map_or(view.cleared(), |second| 0.5 * (nearest + second))
+}
+
+/// What is no farther behind the nearest surface is that surface, relative to its depth: four units of the last place.
+const SAME_LAYER: f64 = 4.0 * f32::EPSILON as f64;
+
 /// The casters along the ray through a place in a view.
-fn cast(scene: &Scene, casters: &Casters, lookup: &Lookup, view: usize, position_in_texels: DVec2) -> Vec<Surface> {
+pub(super) fn cast(
+    scene: &Scene,
+    casters: &Casters,
+    lookup: &Lookup,
+    view: usize,
+    position_in_texels: DVec2,
+) -> Vec<Surface> {
     let Some(ray) = lookup.ray_through(view, position_in_texels, &casters.bounds()) else { return Vec::new() };
     let mut hits = Vec::new();
     casters.all_hits(&ray, None, &mut hits);

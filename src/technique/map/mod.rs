@@ -15,6 +15,7 @@ mod lookup;
 mod lookup_facts;
 mod mask_pass;
 mod means;
+mod midpoint;
 mod moment_passes;
 mod offset;
 mod outline;
@@ -117,6 +118,14 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
     if settings.filter.softens() && !settings.projection.is_frustum() {
         return refused(format!(
             "filter={filter} takes the light's extent into account in a plain frustum only, not in projection={projection}"
+        ));
+    }
+    if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {
+        return refused("bias=midpoint lies between two sides of casters: it needs caster_sides=all".to_owned());
+    }
+    if settings.stores_midpoint() && settings.filter.needs_linear_depth() {
+        return refused(format!(
+            "filter={filter} reckons with blockers' distances, which bias=midpoint does not store"
         ));
     }
     Ok(())

@@ -49,7 +49,7 @@ impl Lookup {
     pub(super) fn bias_depth(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
         let typed_m = self.bias.depth_m + self.bias.depth_texels * site.texel_m().max_element();
         let along_light = typed_m / site.metres_per_depth();
-        if self.bias.clearance == Clearance::None {
+        if matches!(self.bias.clearance, Clearance::None | Clearance::Midpoint) {
             return along_light;
         }
         along_light + self.closed_form(site, normal_in_world, reach_texels)

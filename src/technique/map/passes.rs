@@ -3,6 +3,7 @@
 use super::filter::moments::Storage;
 use super::lookup::Lookup;
 use super::mask_pass::{EXTREMES, MaskPass};
+use super::midpoint::{MIDPOINT, MidpointPass};
 use super::moment_passes::{self, MomentPasses};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
@@ -15,14 +16,17 @@ use glam::{DVec3, DVec4, Mat4, Vec4};
 use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
-    DepthStencilState, Face, FilterMode, FrontFace, LoadOp, Operations, PrimitiveState,
-    RenderPassDepthStencilAttachment, RenderPipeline, Sampler, SamplerDescriptor, StoreOp, Texture, TextureUsages,
-    TextureView, TextureViewDescriptor, TextureViewDimension,
+    DepthStencilState, Face, FrontFace, LoadOp, Operations, PrimitiveState, RenderPassDepthStencilAttachment,
+    RenderPipeline, StoreOp, Texture, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    TextureViewDimension,
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
-const CASTER_DEPTH: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_rows.wgsl")];
-const CASTER_PARABOLOID: [Wgsl; 2] = [wgsl!("map/caster_depth.wgsl"), wgsl!("map/caster_paraboloid.wgsl")];
+const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
+const CASTER_ROWS: Wgsl = wgsl!("map/caster_rows.wgsl");
+const CASTER_PARABOLOID: Wgsl = wgsl!("map/caster_paraboloid.wgsl");
+const NEAREST_LAYER: Wgsl = wgsl!("map/nearest_layer.wgsl");
+const SECOND_LAYER: Wgsl = wgsl!("map/second_layer.wgsl");
 const VIEW: Wgsl = wgsl!("map/view.wgsl");
 const LOOKUP: Wgsl = wgsl!("map/lookup.wgsl");
 const OFFSET: Wgsl = wgsl!("map/offset.wgsl");
@@ -44,8 +48,11 @@ fn shared_files(projection: &dyn projection::Projection) -> [Wgsl; 6] {
 pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let mut modules = vec![
         ("map caster".to_owned(), vec![CASTER]),
-        ("map caster depth".to_owned(), CASTER_DEPTH.to_vec()),
-        ("map caster paraboloid".to_owned(), CASTER_PARABOLOID.to_vec()),
+        ("map caster depth".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, NEAREST_LAYER]),
+        ("map caster paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, NEAREST_LAYER]),
+        ("map second layer".to_owned(), vec![CASTER_DEPTH, CASTER_ROWS, SECOND_LAYER]),
+        ("map second layer paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, SECOND_LAYER]),
+        ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
         ("map depth extremes".to_owned(), vec![EXTREMES]),
         ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
@@ -92,6 +99,8 @@ struct CasterUniform {
 pub(super) struct MapPasses {
     map: Texture,
     layers: Vec<Layer>,
+    /// What makes the map of two others, for a map that stores the middle between two surfaces.
+    midpoint: Option<MidpointPass>,
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
@@ -102,7 +111,7 @@ pub(super) struct MapPasses {
 }
 
 /// How one view is drawn.
-struct Layer {
+pub(super) struct Layer {
     target: TextureView,
     pipeline: RenderPipeline,
     bindings: BindGroup,
@@ -137,6 +146,9 @@ impl MapPasses {
                 None => lookup_files(settings.projection, settings.filter),
             };
             let lookup_pipeline = gpu.compute_pipeline("map lookup", &files);
+            let midpoint = settings.stores_midpoint().then(|| MidpointPass::new(gpu, settings, lookup, &map));
+            let nearest = midpoint.as_ref().map_or(&map, MidpointPass::nearest);
+            let layers = layers(gpu, settings, lookup, nearest, None);
             let all_layers = all_layers(&map);
             let points = silhouettes.map(|edges| PointPass::new(gpu, lookup.texels(), &views, &all_layers, edges));
             let moments = settings
@@ -148,8 +160,7 @@ impl MapPasses {
             let level = settings.filter.mask_level(&settings.kernel);
             let mask = level.map(|level| MaskPass::new(gpu, lookup, &all_layers, level));
             let extremes = mask.as_ref().map(MaskPass::view);
-            let sampler = settings.filter.samples().then(|| comparing_sampler(gpu, lookup));
-            let layers = layers(gpu, settings, lookup, &map);
+            let sampler = settings.filter.samples().then(|| gpu.comparing_sampler(is_lit(lookup)));
             let bind = |chunk: &Chunk| {
                 let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
                     (0, chunk.receivers.as_entire_binding()),
@@ -170,6 +181,7 @@ impl MapPasses {
             };
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
+                    + midpoint.as_ref().map_or(0, MidpointPass::bytes)
                     + moments.as_ref().map_or(0, MomentPasses::bytes)
                     + mask.as_ref().map_or(0, MaskPass::bytes)
                     + numbers.as_ref().map_or(0, Buffer::size)
@@ -179,6 +191,7 @@ impl MapPasses {
                     + layers.iter().filter_map(|layer| layer.pieces.as_ref()).map(Buffer::size).sum::<u64>(),
                 lookup_bindings: receivers.chunks().iter().map(bind).collect(),
                 layers,
+                midpoint,
                 texel_reads: texel_reads(settings, silhouettes.is_some()),
                 map,
                 lookup_pipeline,
@@ -198,24 +211,9 @@ impl MapPasses {
     ) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow map", || {
             let mut recorder = Recorder::new(gpu);
-            for layer in &self.layers {
-                let depth = RenderPassDepthStencilAttachment {
-                    view: &layer.target,
-                    depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
-                    stencil_ops: None,
-                };
-                let no_color = if layer.writes_depth { &[None][..] } else { &[] };
-                recorder.render("map", no_color, Some(depth), |pass| {
-                    pass.set_pipeline(&layer.pipeline);
-                    pass.set_bind_group(0, &layer.bindings, &[]);
-                    match &layer.pieces {
-                        Some(corners) => {
-                            pass.set_vertex_buffer(0, corners.slice(..));
-                            pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
-                        }
-                        None => geometry.draw_casters(pass),
-                    }
-                });
+            record_layers(&mut recorder, "map", &self.layers, geometry);
+            if let Some(midpoint) = &self.midpoint {
+                midpoint.record(&mut recorder, geometry);
             }
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
@@ -299,37 +297,68 @@ fn all_layers(map: &Texture) -> TextureView {
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
 }
 
-/// Compares with the four texels around a place and weighs the answers. Equality is lit.
-fn comparing_sampler(gpu: &Gpu, lookup: &Lookup) -> Sampler {
-    let is_forward = lookup.views[0].depth_sign > 0.0;
-    gpu.device.create_sampler(&SamplerDescriptor {
-        label: Some("comparing"),
-        mag_filter: FilterMode::Linear,
-        min_filter: FilterMode::Linear,
-        compare: Some(if is_forward { CompareFunction::LessEqual } else { CompareFunction::GreaterEqual }),
-        ..SamplerDescriptor::default()
+/// How a reference compares with a stored depth where it is lit. Equality is.
+fn is_lit(lookup: &Lookup) -> CompareFunction {
+    if lookup.views[0].depth_sign > 0.0 { CompareFunction::LessEqual } else { CompareFunction::GreaterEqual }
+}
+
+/// Draws the casters into every view's layer.
+pub(super) fn record_layers(recorder: &mut Recorder<'_>, name: &'static str, layers: &[Layer], geometry: &Geometry) {
+    for layer in layers {
+        let depth = RenderPassDepthStencilAttachment {
+            view: &layer.target,
+            depth_ops: Some(Operations { load: LoadOp::Clear(layer.clear_depth), store: StoreOp::Store }),
+            stencil_ops: None,
+        };
+        let no_color = if layer.writes_depth { &[None][..] } else { &[] };
+        recorder.render(name, no_color, Some(depth), |pass| {
+            pass.set_pipeline(&layer.pipeline);
+            pass.set_bind_group(0, &layer.bindings, &[]);
+            match &layer.pieces {
+                Some(corners) => {
+                    pass.set_vertex_buffer(0, corners.slice(..));
+                    pass.draw(0..(corners.size() / CORNER_LAYOUT.array_stride) as u32, 0..1);
+                }
+                None => geometry.draw_casters(pass),
+            }
+        });
+    }
+}
+
+/// One layer of a texture.
+pub(super) fn layer_view(map: &Texture, index: u32) -> TextureView {
+    map.create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2),
+        base_array_layer: index,
+        array_layer_count: Some(1),
+        ..Default::default()
     })
 }
 
-fn layers(gpu: &Gpu, settings: &Settings, lookup: &Lookup, map: &Texture) -> Vec<Layer> {
+/// How every view is drawn into its layer of `map`: everything, or what lies behind the layers of another map.
+pub(super) fn layers(
+    gpu: &Gpu,
+    settings: &Settings,
+    lookup: &Lookup,
+    map: &Texture,
+    behind: Option<&Texture>,
+) -> Vec<Layer> {
     let mut pipelines: Vec<(Raster, RenderPipeline)> = Vec::new();
     let layer = |(index, view): (u32, &View)| {
         let raster = Raster::of(settings, lookup, view);
         let known = pipelines.iter().find(|(known, _)| *known == raster).map(|(_, pipeline)| pipeline.clone());
         let pipeline = known.unwrap_or_else(|| {
-            let built = raster.pipeline(gpu, settings, lookup);
+            let built = raster.pipeline(gpu, settings, lookup, map.format(), behind.is_some());
             pipelines.push((raster, built.clone()));
             built
         });
         let uniform = gpu.uniform("caster", caster_uniform(settings, lookup, view));
+        let nearer = behind.map(|nearer| layer_view(nearer, index));
+        let mut resources = vec![uniform.as_entire_binding()];
+        resources.extend(nearer.as_ref().map(BindingResource::TextureView));
         Layer {
-            target: map.create_view(&TextureViewDescriptor {
-                dimension: Some(TextureViewDimension::D2),
-                base_array_layer: index,
-                array_layer_count: Some(1),
-                ..Default::default()
-            }),
-            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &[uniform.as_entire_binding()]),
+            target: layer_view(map, index),
+            bindings: gpu.bind(&pipeline.get_bind_group_layout(0), &resources),
             pipeline,
             clear_depth: view.cleared() as f32,
             pieces: view.drawn.as_ref().map(|drawn| piece_corners(gpu, drawn)),
@@ -393,19 +422,24 @@ impl Raster {
             on_disc,
             depth_sign: view.depth_sign,
             winding: view.winding(lookup.light()),
-            writes_depth: has_own_depth || (!on_disc && view.rows.depth_q != view.rows.q),
+            writes_depth: has_own_depth || settings.stores_midpoint() || (!on_disc && view.rows.depth_q != view.rows.q),
         }
     }
 
-    fn pipeline(&self, gpu: &Gpu, settings: &Settings, lookup: &Lookup) -> RenderPipeline {
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        settings: &Settings,
+        lookup: &Lookup,
+        format: TextureFormat,
+        is_second: bool,
+    ) -> RenderPipeline {
+        let placed = if self.on_disc { CASTER_PARABOLOID } else { CASTER_ROWS };
+        let own_depth = [CASTER_DEPTH, placed, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: match (self.on_disc, self.writes_depth) {
-                (true, _) => &CASTER_PARABOLOID,
-                (false, true) => &CASTER_DEPTH,
-                (false, false) => &[CASTER],
-            },
+            files: if self.writes_depth || self.on_disc { &own_depth } else { &[CASTER] },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },
@@ -418,7 +452,7 @@ impl Raster {
                 ..PrimitiveState::default()
             },
             depth_stencil: Some(DepthStencilState {
-                format: settings.format.texture_format(),
+                format,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(if self.depth_sign > 0.0 {
                     CompareFunction::Less

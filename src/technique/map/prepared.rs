@@ -2,13 +2,20 @@
 
 use super::lookup::Lookup;
 use super::passes::MapPasses;
+use super::projection::View;
 use super::{Placed, Settings, filter, texel_footprint};
 use crate::cause::Replay;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError};
+use crate::technique::{
+    Answer, BiasAt, EffectiveBias, InView, Job, LightDepths, Prepared, ReceiverBuffer, TechniqueError,
+};
 use glam::{DMat4, DVec2, DVec3, UVec2, Vec4};
+use rayon::prelude::*;
+
+/// What `bias=midpoint` does to stored depths.
+const HALFWAY: &str = "halfway to the second surface";
 
 pub(super) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
@@ -67,16 +74,19 @@ impl<'j> PreparedMap<'j> {
         let metres_per_depth = site.metres_per_depth();
         let corners = self.job.scene.triangle_in_world(receiver.triangle);
         let by_rasteriser = lookup.hardware_bias(placed.view, corners).abs();
-        let effective_m = ((placed.depth - placed.reference).abs() + by_rasteriser) * metres_per_depth;
+        let along_light_depth = (placed.depth - placed.reference).abs() + by_rasteriser;
+        let along_light_m = along_light_depth * metres_per_depth;
         let kernel = self.settings.filter.bias_kernel(&self.settings.kernel);
         let acne_free = lookup.closed_form(&site, receiver.normal_in_world, DVec2::splat(kernel));
         let light = self.job.light.homogeneous();
         let to_light = (light.truncate() - receiver.point_in_world * light.w).normalize_or_zero();
         let sine_of_elevation = receiver.normal_in_world.dot(to_light);
         BiasAt {
-            effective_m,
+            along_light_depth,
+            along_light_m,
+            along_normal_m: placed.point_in_world.distance(receiver.point_in_world),
             acne_free_m: acne_free * metres_per_depth,
-            contact_gap_m: effective_m * (1.0 - sine_of_elevation * sine_of_elevation).max(0.0).sqrt(),
+            contact_gap_m: along_light_m * (1.0 - sine_of_elevation * sine_of_elevation).max(0.0).sqrt(),
             texel_m: site.texel_m().max_element(),
         }
     }
@@ -93,15 +103,6 @@ impl Prepared for PreparedMap<'_> {
     }
 
     fn facts(&self) -> Vec<(String, String)> {
-        let asked = self.job.classes.iter().zip(&self.job.receivers.pixels);
-        let receivers = asked.filter(|(class, _)| **class == PixelClass::Asked).filter_map(|(_, pixel)| *pixel);
-        let biases: Vec<BiasAt> = receivers
-            .filter_map(|receiver| {
-                let view = self.lookup.select(receiver.point_in_world).first;
-                let placed = self.lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()?;
-                Some(self.bias_at(&receiver, &placed))
-            })
-            .collect();
         let mut facts: Vec<(String, String)> = match self.lookup.views.as_slice() {
             [view] => vec![
                 ("light window".to_owned(), view.window.clone()),
@@ -109,16 +110,34 @@ impl Prepared for PreparedMap<'_> {
             ],
             views => views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect(),
         };
+        let biases = self.bias();
+        let is_alone = biases.len() == 1;
+        for bias in &biases {
+            let label = |label: String| if is_alone { label } else { format!("{}: {label}", bias.view) };
+            facts.extend(bias.facts().into_iter().map(|(of, value)| (label(of), value)));
+        }
         // What cannot be read back is not told.
         if let Ok(Some(overflowed)) = self.passes.overflowed(self.job.gpu) {
             facts.push(("overflowed moments".to_owned(), overflowed.to_string()));
         }
-        facts.extend([
-            ("effective bias".to_owned(), spread(&biases, |bias| bias.effective_m)),
-            ("acne-free bias".to_owned(), spread(&biases, |bias| bias.acne_free_m)),
-            ("contact gap".to_owned(), spread(&biases, |bias| bias.contact_gap_m)),
-        ]);
         facts
+    }
+
+    fn bias(&self) -> Vec<EffectiveBias> {
+        let asked = self.job.classes.par_iter().zip(&self.job.receivers.pixels);
+        let receivers = asked.filter(|(class, _)| **class == PixelClass::Asked).filter_map(|(_, pixel)| *pixel);
+        let placed = receivers.filter_map(|receiver| {
+            let view = self.lookup.select(receiver.point_in_world).first;
+            let placed = self.lookup.place(view, receiver.point_in_world, receiver.normal_in_world).ok()?;
+            Some((view, self.bias_at(&receiver, &placed)))
+        });
+        let placed: Vec<(usize, BiasAt)> = placed.collect();
+        let of_view = |(index, view): (usize, &View)| {
+            let biases: Vec<BiasAt> = placed.iter().filter(|(of, _)| *of == index).map(|(_, bias)| *bias).collect();
+            let bias = EffectiveBias::of(&view.name, &biases)?;
+            Some(if self.settings.stores_midpoint() { bias.with_stored(HALFWAY) } else { bias })
+        };
+        self.lookup.views.iter().enumerate().filter_map(of_view).collect()
     }
 
     fn replay(&self, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
@@ -155,42 +174,4 @@ impl Prepared for PreparedMap<'_> {
         let drawn = |depth: f64| (depth > 0.0 && depth < 1.0).then_some(depth);
         Ok(Some(LightDepths { size, depths: depths.into_iter().map(drawn).collect() }))
     }
-}
-
-/// The bias at one receiver, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct BiasAt {
-    /// What is applied, at the receiver and by the rasteriser together, along the light.
-    effective_m: f64,
-    /// What the receiver's own slope and the filter need.
-    acne_free_m: f64,
-    /// How far a thin blocker's shadow starts from where it stands, for the bias applied.
-    contact_gap_m: f64,
-    /// Width of a texel there.
-    texel_m: f64,
-}
-
-impl BiasAt {
-    /// Label and value of each figure, for one pixel.
-    pub(super) fn facts(&self) -> [(String, String); 3] {
-        [("bias", self.effective_m), ("acne-free bias", self.acne_free_m), ("contact gap", self.contact_gap_m)]
-            .map(|(label, metres)| (label.to_owned(), in_metres_and_texels(metres, self.texel_m)))
-    }
-}
-
-fn in_metres_and_texels(metres: f64, texel_m: f64) -> String {
-    format!("{metres:.3e} m = {:.2} texels", metres / texel_m)
-}
-
-/// Median and largest of one figure.
-fn spread(biases: &[BiasAt], figure: fn(&BiasAt) -> f64) -> String {
-    let mut sorted: Vec<&BiasAt> = biases.iter().collect();
-    sorted.sort_by(|a, b| figure(a).total_cmp(&figure(b)));
-    sorted.get(sorted.len() / 2).zip(sorted.last()).map_or_else(
-        || "no receiver in the map".to_owned(),
-        |(middle, most)| {
-            let [middle, most] = [middle, most].map(|bias| in_metres_and_texels(figure(bias), bias.texel_m));
-            format!("median {middle}, largest {most}")
-        },
-    )
 }

@@ -2,7 +2,8 @@
 //! texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
 //! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
 
-use super::exact_texels::{ExactTexel, Surface, drawn_in_pieces};
+use super::bias::Clearance;
+use super::exact_texels::{ExactTexel, cast, drawn_in_pieces, held};
 use super::lookup::{Lookup, Outside, Placed, Tap};
 use super::means::Means;
 use super::own_surface::is_own_surface;
@@ -168,6 +169,11 @@ impl<'r> Replayer<'r> {
     fn biased(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
         let scene = self.map.job.scene;
+        if lookup.bias.clearance == Clearance::Midpoint {
+            let surfaces = cast(scene, self.map.job.casters, lookup, placed.view, placed.position_in_texels);
+            let stored = held(lookup, placed.view, &surfaces).depth;
+            return visibility(lookup.is_lit(placed.view, placed.reference, stored));
+        }
         let blocks = |hit: &Blocker| {
             let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
             drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {
@@ -183,11 +189,8 @@ impl<'r> Replayer<'r> {
     fn by_chords(&self, placed: &Placed) -> Option<f64> {
         let lookup = &self.map.lookup;
         let surfaces = drawn_in_pieces(lookup, placed.view, placed.position_in_texels)?;
-        let blocks = |surface: &Surface| {
-            let depth = (surface.depth + surface.bias).clamp(0.0, 1.0);
-            !lookup.is_lit(placed.view, placed.reference, depth)
-        };
-        Some(visibility(!surfaces.iter().any(blocks)))
+        let stored = held(lookup, placed.view, &surfaces).depth;
+        Some(visibility(lookup.is_lit(placed.view, placed.reference, stored)))
     }
 
     /// Why the blocker is lost that the bias reaches over: the bias, if the map would show it without any; if not, the

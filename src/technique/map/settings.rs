@@ -211,6 +211,12 @@ impl Settings {
         self.filter.radius_texels(&self.kernel) + 1.0 + self.fit.margin_texels
     }
 
+    /// Whether texels store the middle between two surfaces.
+    #[must_use]
+    pub fn stores_midpoint(&self) -> bool {
+        self.bias_amounts().clearance == bias::Clearance::Midpoint
+    }
+
     /// What lies beyond the border as moments take it: 0 at the near plane, 1 at the far one; `None`: the nearest texel.
     #[must_use]
     pub fn z_beyond(&self) -> Option<f64> {

@@ -39,6 +39,11 @@ impl Technique for Silhouette {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
             return Err(Unsupported::MissingFeature { what });
         }
+        if settings.stores_midpoint() {
+            let why =
+                "an outline is hidden or not by the nearest depths, which bias=midpoint does not store".to_owned();
+            return Err(Unsupported::Combination { why });
+        }
         settings.projection.supports(scene, light, &settings)
     }
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {

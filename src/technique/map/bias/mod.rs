@@ -1,10 +1,11 @@
 //! The bias axis: what keeps a surface from shadowing itself. Every bias comes down to the same amounts, applied in one
-//! place each: the rasteriser's constant and slope while the map is drawn, the rest at the receiver.
+//! place each: the rasteriser's constant and slope and the midpoint while the map is drawn, the rest at the receiver.
 //!
 //! Adding one: a file here and a line in [`registry`]. Units and derivations: docs/map.md#bias.
 
 mod closed_form;
 mod constant;
+mod midpoint;
 mod none;
 mod normal;
 mod receiver_plane;
@@ -20,6 +21,7 @@ pub fn registry() -> &'static [&'static dyn Bias] {
         &normal::Normal,
         &receiver_plane::ReceiverPlane,
         &closed_form::ClosedForm,
+        &midpoint::Midpoint,
     ]
 }
 
@@ -50,7 +52,7 @@ pub struct Numbers {
     pub cap_texels: f64,
 }
 
-/// What keeps a receiver's plane clear of its own samples, worked out at each receiver; the numbers are the shader's.
+/// What keeps a receiver's plane clear of its own samples; the numbers are the shader's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clearance {
     /// Nothing.
@@ -61,6 +63,8 @@ pub enum Clearance {
     Normal = 2,
     /// Every tap is compared with the plane's own depth at the texel's centre.
     ReceiverPlane = 3,
+    /// Every texel stores the middle between the two nearest surfaces.
+    Midpoint = 4,
 }
 
 /// What is applied.
@@ -159,6 +163,7 @@ mod tests {
         assert_eq!(hardware("slope"), (2, 1.0, Clearance::None, 0.0));
         assert_eq!(hardware("normal"), (0, 0.0, Clearance::Normal, 0.5));
         assert_eq!(hardware("receiver-plane"), (0, 0.0, Clearance::ReceiverPlane, 0.5));
+        assert_eq!(hardware("midpoint"), (0, 0.0, Clearance::Midpoint, 0.5));
         assert_eq!(hardware("closed-form"), (0, 0.0, Clearance::ClosedForm, 0.5));
     }
 
