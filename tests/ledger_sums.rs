@@ -78,6 +78,8 @@ const SPECS: &[&str] = &[
     "map:projection=dual-paraboloid,size=101,max_edge_deg=0,bias=slope,caster_sides=away-facing",
     "map:projection=dual-paraboloid,size=60,max_edge_deg=9,bias=none,seam=clamp,filter=pcf-poisson,orientation=down",
     "map:projection=dual-paraboloid,size=3,near_m=1,near_mode=fragment-clamp,depth_convention=forward,filter=pcf-box5",
+    "map:projection=adaptive,tile_texels=16,max_tiles=70,filter=pcf-box4",
+    "map:projection=adaptive,tile_texels=33,max_tiles=20,edges_only=off,m_target=0.5,bias=slope,seam=clamp,filter=pcf-box3",
     "map:depth_metric=linear,size=300,bias=slope",
     "map:projection=cube,depth_metric=linear,depth_convention=forward,filter=pcf-box2,size=100",
     "map:projection=trapezoidal,depth_metric=linear,size=200,bias=slope",

@@ -38,6 +38,7 @@ const FAULTS: &[Fault] = &[
         "map",
     ),
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
+    ("map/projection/adaptive.wgsl", "<= place", "< place - 9000u", "map:projection=adaptive"),
     ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
