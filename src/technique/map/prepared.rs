@@ -5,6 +5,7 @@ use super::passes::MapPasses;
 use super::projection::View;
 use super::{Placed, Settings, texel_footprint};
 use crate::cause::Replay;
+use crate::gpu::PassRecord;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
@@ -17,7 +18,8 @@ use rayon::prelude::*;
 /// What `bias=midpoint` does to stored depths.
 const HALFWAY: &str = "halfway to the second surface";
 
-pub(super) struct PreparedMap<'j> {
+/// A map of one light, ready to run.
+pub(in crate::technique) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
     pub(super) settings: Settings,
     pub(super) lookup: Lookup,
@@ -32,7 +34,7 @@ pub(super) struct PreparedMap<'j> {
 
 impl<'j> PreparedMap<'j> {
     /// With the edges of the casters' silhouettes for a map that draws them.
-    pub(super) fn new(
+    pub(in crate::technique) fn new(
         settings: &Settings,
         job: Job<'j>,
         silhouettes: Option<&[[DVec3; 2]]>,
@@ -47,6 +49,16 @@ impl<'j> PreparedMap<'j> {
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
         Ok(Self { job, settings: *settings, lookup, passes, receivers, numbers, scene_radius_m, silhouettes })
+    }
+
+    /// Draws the map and answers on the device, where the answers stay.
+    pub(in crate::technique) fn draw(&self) -> Result<Vec<PassRecord>, TechniqueError> {
+        Ok(self.passes.run(self.job.gpu, self.job.geometry, &self.receivers)?)
+    }
+
+    /// Who asks, with the answers of the last run.
+    pub(in crate::technique) fn receivers(&self) -> &ReceiverBuffer {
+        &self.receivers
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -87,7 +99,7 @@ impl<'j> PreparedMap<'j> {
 
 impl Prepared for PreparedMap<'_> {
     fn run(&self) -> Result<Answer, TechniqueError> {
-        let passes = self.passes.run(self.job.gpu, self.job.geometry, &self.receivers)?;
+        let passes = self.draw()?;
         Ok(Answer { mask: self.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
     }
 
