@@ -132,7 +132,7 @@ fn what_does_not_go_together_is_refused_with_the_reason() {
     for (typed, reason) in [
         ("map:filter=pcss,depth_metric=projected", "depth_metric=linear"),
         ("map:filter=pcss,projection=trapezoidal", "plain frustum"),
-        ("map:projection=perspective,depth_metric=linear", "warps depth"),
+        ("map:projection=perspective,depth_metric=linear", "distance along one axis"),
     ] {
         let refused = refusal(typed);
         assert!(

@@ -48,8 +48,31 @@ const FAULTS: &[Fault] = &[
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
     ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),
-    ("map/filter/pcf_poisson.wgsl", "RADIUS_TEXELS / 1024.0", "RADIUS_TEXELS / 900.0", "map:filter=pcf-poisson"),
+    ("map/filter/pcf_poisson.wgsl", "/ 1024.0", "/ 900.0", "map:filter=pcf-poisson"),
+    ("map/filter/pcf_hardware.wgsl", "corner + 0.5", "corner + 0.75", "map:filter=pcf-hardware2"),
+    ("map/filter/pcf_edge_masked.wgsl", "max(around.y, block.y)", "min(around.y, block.y)", MASKED),
+    ("map/extremes.wgsl", "low = min(low, depth)", "low = max(low, depth)", MASKED),
     ("map/filter/pcss.wgsl", "numbers[0].w", "0.5 * numbers[0].w", SOFTENED),
+    ("map/filter/vsm.wgsl", "mean.y - mean.x * mean.x", "mean.y - mean.x", "map:filter=vsm"),
+    ("map/filter/esm.wgsl", "mean.x * exp(-numbers[1].x * z)", "mean.x * exp(-numbers[1].x)", "map:filter=esm"),
+    ("map/filter/evsm.wgsl", "-exp(-numbers[1].y", "exp(-numbers[1].y", "map:filter=evsm"),
+    ("map/filter/msm.wgsl", "c1 / c3", "c1 * c3", "map:filter=msm,msm_bias=0.01"),
+    ("map/filter/depth_mean.wgsl", "z <= mean.x", "z <= 0.9 * mean.x", "map:filter=depth-mean"),
+    ("map/moments/z.wgsl", "1.0 - depth", "depth", "map:filter=vsm"),
+    ("map/moments/lookup.wgsl", "(n + 1) / 2", "n / 2", "map:filter=vsm"),
+    ("map/moments/rows.wgsl", "/ f32(n)", "/ 2.0", "map:filter=vsm"),
+    ("map/moments/columns.wgsl", "/ f32(n)", "/ 2.0", "map:filter=vsm"),
+    ("map/moments/gather.wgsl", "texels[index].xy", "texels[index].yx", "map:filter=vsm"),
+    ("map/moments/chebyshev.wgsl", "variance / (variance", "variance / (2.0 * variance", "map:filter=vsm"),
+    ("map/moments/r32float.wgsl", "<r32float, write>", "<rgba32float, write>", "map:filter=esm"),
+    ("map/moments/rg32float.wgsl", "<rg32float, write>", "<rgba32float, write>", "map:filter=vsm"),
+    ("map/moments/rgba32float.wgsl", "<rgba32float, write>", "<rg32float, write>", "map:filter=evsm"),
+    (
+        "map/moments/rgba16float.wgsl",
+        "<rgba16float, write>",
+        "<rg32float, write>",
+        "map:filter=vsm,moment_format=float16",
+    ),
     ("map/numbers.wgsl", "array<vec4f>", "array<vec3f>", SOFTENED),
     ("map/turn.wgsl", "747796405u", "747796407u", SOFTENED),
     ("irregular/view.wgsl", "ROUNDING: f32 = ", "ROUNDING: f32 = -1e4 * ", "irregular"),
@@ -87,6 +110,7 @@ const FAULTS: &[Fault] = &[
     ("volume/resolve_masked.wgsl", "!= 0u", "== 0u", "hybrid"),
     ("hybrid/classify.wgsl", "> 0.0 &&", "> 1.0 &&", "hybrid"),
 ];
+const MASKED: &str = "map:filter=pcf-edge-masked,depth_convention=forward";
 const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
 const PARABOLOID: &str = "map:projection=dual-paraboloid";

@@ -8,9 +8,9 @@ use glam::UVec2;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer, BufferUsages,
-    ColorTargetState, ComputePipeline, ComputePipelineDescriptor, DepthStencilState, Extent3d, FragmentState,
-    PrimitiveState, RenderPipeline, RenderPipelineDescriptor, Texture, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, VertexBufferLayout, VertexState,
+    ColorTargetState, CompareFunction, ComputePipeline, ComputePipelineDescriptor, DepthStencilState, Extent3d,
+    FilterMode, FragmentState, PrimitiveState, RenderPipeline, RenderPipelineDescriptor, Sampler, SamplerDescriptor,
+    Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, VertexBufferLayout, VertexState,
 };
 
 /// A render pipeline to be built.
@@ -68,11 +68,31 @@ impl Gpu {
         self.buffer(label, &[value], BufferUsages::UNIFORM)
     }
 
+    /// A sampler that compares with the four texels around a place and weighs the answers.
+    pub(crate) fn comparing_sampler(&self, compare: CompareFunction) -> Sampler {
+        self.device.create_sampler(&SamplerDescriptor {
+            label: Some("comparing"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            compare: Some(compare),
+            ..SamplerDescriptor::default()
+        })
+    }
+
     /// Resources bound in the order of their binding numbers, from 0.
     pub(crate) fn bind(&self, layout: &BindGroupLayout, resources: &[BindingResource<'_>]) -> BindGroup {
         let entries: Vec<BindGroupEntry<'_>> = (0..)
             .zip(resources)
             .map(|(binding, resource)| BindGroupEntry { binding, resource: resource.clone() })
+            .collect();
+        self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// Resources bound by number, for shaders that use some of many.
+    pub(crate) fn bind_at(&self, layout: &BindGroupLayout, resources: &[(u32, BindingResource<'_>)]) -> BindGroup {
+        let entries: Vec<BindGroupEntry<'_>> = resources
+            .iter()
+            .map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() })
             .collect();
         self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries })
     }

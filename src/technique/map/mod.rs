@@ -13,7 +13,10 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod mask_pass;
+mod means;
 mod midpoint;
+mod moment_passes;
 mod offset;
 mod outline;
 mod own_surface;
@@ -63,7 +66,8 @@ impl Technique for Map {
     }
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
         let settings = Settings::of(spec);
-        let limit = gpu.limits().texture_side;
+        let has_moments = settings.filter.moments().is_some();
+        let limit = gpu.limits().texture_side - if has_moments { moment_passes::side(0) } else { 0 };
         if settings.size > limit {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
             return Err(Unsupported::MissingFeature { what });
@@ -97,7 +101,20 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
         return refused(format!("filter={filter} reckons with distances: it needs depth_metric=linear, or auto"));
     }
     if is_linear && !settings.projection.has_linear_depth() {
-        return refused(format!("projection={projection} warps depth along: it has no depth_metric=linear"));
+        return refused(format!(
+            "projection={projection} has no depth_metric=linear: its depth is not the distance along one axis"
+        ));
+    }
+    if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
+        return refused(format!(
+            "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
+        ));
+    }
+    let compares_texels = settings.filter.moments().is_none() && !settings.filter.samples();
+    if !compares_texels && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
+        return refused(format!(
+            "bias=receiver-plane compares texel by texel, which filter={filter} does not: it needs another bias"
+        ));
     }
     if settings.filter.softens() && !settings.projection.is_frustum() {
         return refused(format!(

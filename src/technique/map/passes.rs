@@ -1,7 +1,10 @@
 //! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
+use super::filter::moments::Storage;
 use super::lookup::Lookup;
+use super::mask_pass::{EXTREMES, MaskPass};
 use super::midpoint::{MIDPOINT, MidpointPass};
+use super::moment_passes::{self, MomentPasses};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::settings::{CasterSides, NearMode};
 use super::{DepthFormat, Settings, filter, projection};
@@ -9,7 +12,7 @@ use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{CORNER_LAYOUT, Drawing, Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Mat4, Vec4};
+use glam::{DVec3, DVec4, Mat4, Vec4};
 use projection::{Drawn, GpuView, View};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, DepthBiasState,
@@ -51,10 +54,19 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         ("map second layer paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, SECOND_LAYER]),
         ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
+        ("map depth extremes".to_owned(), vec![EXTREMES]),
+        ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
     let single = projection::by_name("single");
     modules.push(("silhouette lookup".to_owned(), [&shared_files(single)[..], &[WEDGES]].concat()));
+    for filter in filter::registry() {
+        for (moments, is_half) in filter.moments().into_iter().flat_map(|moments| [(moments, false), (moments, true)]) {
+            let [rows, columns] = Storage::of(moments.count(), is_half).modules(filter.shader());
+            let label = |axis: &str| format!("map moments by {axis} {} half={is_half}", filter.choice().name);
+            modules.extend([(label("rows"), rows), (label("columns"), columns)]);
+        }
+    }
     for projection in projection::registry() {
         for filter in filter::registry() {
             let label = format!("map lookup {} {}", projection.name(), filter.choice().name);
@@ -92,6 +104,8 @@ pub(super) struct MapPasses {
     lookup_pipeline: ComputePipeline,
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
+    moments: Option<MomentPasses>,
+    mask: Option<MaskPass>,
     buffer_bytes: u64,
     texel_reads: u32,
 }
@@ -137,21 +151,39 @@ impl MapPasses {
             let layers = layers(gpu, settings, lookup, nearest, None);
             let all_layers = all_layers(&map);
             let points = silhouettes.map(|edges| PointPass::new(gpu, lookup.texels(), &views, &all_layers, edges));
+            let moments = settings
+                .filter
+                .moments()
+                .zip(numbers.as_ref())
+                .map(|(moments, numbers)| MomentPasses::new(gpu, settings, moments, lookup, &all_layers, numbers));
+            let means = moments.as_ref().map(MomentPasses::view);
+            let level = settings.filter.mask_level(&settings.kernel);
+            let mask = level.map(|level| MaskPass::new(gpu, lookup, &all_layers, level));
+            let extremes = mask.as_ref().map(MaskPass::view);
+            let sampler = settings.filter.samples().then(|| gpu.comparing_sampler(is_lit(lookup)));
             let bind = |chunk: &Chunk| {
-                let mut resources = vec![
-                    chunk.receivers.as_entire_binding(),
-                    chunk.visibilities.as_entire_binding(),
-                    uniform.as_entire_binding(),
-                    BindingResource::TextureView(&all_layers),
-                    views.as_entire_binding(),
+                let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
+                    (0, chunk.receivers.as_entire_binding()),
+                    (1, chunk.visibilities.as_entire_binding()),
+                    (2, uniform.as_entire_binding()),
+                    (4, views.as_entire_binding()),
                 ];
-                resources.extend(numbers.as_ref().map(Buffer::as_entire_binding));
-                resources.extend(points.as_ref().map(|points| BindingResource::TextureView(&points.view)));
-                gpu.bind(&lookup_pipeline.get_bind_group_layout(0), &resources)
+                // In place of depths.
+                match &means {
+                    Some(means) => resources.push((6, BindingResource::TextureView(means))),
+                    None => resources.push((3, BindingResource::TextureView(&all_layers))),
+                }
+                resources.extend(extremes.as_ref().map(|extremes| (6, BindingResource::TextureView(extremes))));
+                resources.extend(sampler.as_ref().map(|sampler| (7, BindingResource::Sampler(sampler))));
+                resources.extend(numbers.as_ref().map(|numbers| (5, numbers.as_entire_binding())));
+                resources.extend(points.as_ref().map(|points| (5, BindingResource::TextureView(&points.view))));
+                gpu.bind_at(&lookup_pipeline.get_bind_group_layout(0), &resources)
             };
             Self {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
                     + midpoint.as_ref().map_or(0, MidpointPass::bytes)
+                    + moments.as_ref().map_or(0, MomentPasses::bytes)
+                    + mask.as_ref().map_or(0, MaskPass::bytes)
                     + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
@@ -164,6 +196,8 @@ impl MapPasses {
                 map,
                 lookup_pipeline,
                 points,
+                moments,
+                mask,
             }
         })
     }
@@ -184,6 +218,12 @@ impl MapPasses {
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
             }
+            if let Some(mask) = &self.mask {
+                mask.record(&mut recorder);
+            }
+            if let Some(moments) = &self.moments {
+                moments.record(gpu, &mut recorder);
+            }
             let (pipeline, bindings) = (&self.lookup_pipeline, self.lookup_bindings.as_slice());
             receivers
                 .look_up(&mut recorder, &LookUp { name: "lookup", pipeline, bindings, texel_reads: self.texel_reads });
@@ -195,6 +235,16 @@ impl MapPasses {
     /// The outline's points that the last run drew; `None` for a map without silhouettes.
     pub(super) fn points(&self, gpu: &Gpu) -> Result<Option<Points>, GpuError> {
         self.points.as_ref().map(|points| points.read(gpu)).transpose()
+    }
+
+    /// How many means of moments the last run could not store; `None` without moments.
+    pub(super) fn overflowed(&self, gpu: &Gpu) -> Result<Option<u32>, GpuError> {
+        self.moments.as_ref().map(|moments| moments.overflowed(gpu)).transpose()
+    }
+
+    /// The means of moments at some places (column, row, layer, 0), as the GPU holds them; none without moments.
+    pub(super) fn gather_means(&self, gpu: &Gpu, places: &[[u32; 4]]) -> Result<Vec<DVec4>, GpuError> {
+        self.moments.as_ref().map_or_else(|| Ok(Vec::new()), |moments| moments.gather(gpu, places))
     }
 
     /// The stored depths of some texels, by index, as the GPU holds them.
@@ -245,6 +295,11 @@ fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
 fn all_layers(map: &Texture) -> TextureView {
     let dimension = Some(TextureViewDimension::D2Array);
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
+}
+
+/// How a reference compares with a stored depth where it is lit. Equality is.
+fn is_lit(lookup: &Lookup) -> CompareFunction {
+    if lookup.views[0].depth_sign > 0.0 { CompareFunction::LessEqual } else { CompareFunction::GreaterEqual }
 }
 
 /// Draws the casters into every view's layer.

@@ -3,7 +3,7 @@
 use super::lookup::Lookup;
 use super::passes::MapPasses;
 use super::projection::View;
-use super::{Placed, Settings, texel_footprint};
+use super::{Placed, Settings, filter, texel_footprint};
 use crate::cause::Replay;
 use crate::gpu::PassRecord;
 use crate::mask::Mask;
@@ -44,7 +44,14 @@ impl<'j> PreparedMap<'j> {
         let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let lookup = Lookup::new(views, settings, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
-        let numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let own_numbers = settings.filter.numbers(&settings.kernel, job.light);
+        let numbers = match settings.filter.moments() {
+            Some(moments) => {
+                let (texels, sign) = (settings.kernel.number, lookup.views[0].depth_sign);
+                filter::moments::numbers(moments, own_numbers, texels, settings.z_beyond(), sign)
+            }
+            None => own_numbers,
+        };
         let passes = MapPasses::new(job.gpu, settings, &lookup, &numbers, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
@@ -120,6 +127,10 @@ impl Prepared for PreparedMap<'_> {
         for bias in &biases {
             let label = |label: String| if is_alone { label } else { format!("{}: {label}", bias.view) };
             facts.extend(bias.facts().into_iter().map(|(of, value)| (label(of), value)));
+        }
+        // What cannot be read back is not told.
+        if let Ok(Some(overflowed)) = self.passes.overflowed(self.job.gpu) {
+            facts.push(("overflowed moments".to_owned(), overflowed.to_string()));
         }
         facts
     }

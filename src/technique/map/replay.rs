@@ -5,6 +5,7 @@
 use super::bias::Clearance;
 use super::exact_texels::{ExactTexel, cast, drawn_in_pieces, held};
 use super::lookup::{Lookup, Outside, Placed, Tap};
+use super::means::Means;
 use super::own_surface::is_own_surface;
 use super::prepared::PreparedMap;
 use super::reading::{Depths, Looked, Reading, place};
@@ -38,9 +39,11 @@ struct Blocker {
 }
 
 /// Stage names in order.
-const STAGES: [&str; 7] = ["coverage", "bias", CHORDS, "sampling", "filter", "stored texels", "gpu"];
+const STAGES: [&str; 8] = ["coverage", "bias", CHORDS, "sampling", "filter", MOMENTS, "stored texels", "gpu"];
 /// The stage of maps that are drawn in pieces.
 const CHORDS: &str = "chords";
+/// The stage of filters that average moments.
+const MOMENTS: &str = "moments";
 
 pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Result<Replay, TechniqueError> {
     let replayer = Replayer::new(map, pixels)?;
@@ -52,7 +55,11 @@ pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Re
         causes: replayed.iter().map(|(_, steps)| steps[index].cause).collect(),
     };
     let in_pieces = map.lookup.views.iter().any(|view| view.drawn.is_some());
-    let is_there = |(_, name): &(usize, &str)| in_pieces || *name != CHORDS;
+    let is_there = |(_, name): &(usize, &str)| match *name {
+        CHORDS => in_pieces,
+        MOMENTS => replayer.means.is_some(),
+        _ => true,
+    };
     Ok(Replay {
         pixels: pixels.to_vec(),
         exact: replayed.iter().map(|(exact, _)| *exact).collect(),
@@ -66,13 +73,14 @@ pub(super) struct Replayer<'r> {
     /// The lookup without any bias: what the bias is to blame for, it gets right.
     unbiased: Lookup,
     pub(super) reading: Reading<'r>,
+    means: Option<Means<'r>>,
 }
 
 impl<'r> Replayer<'r> {
     pub(super) fn new(map: &'r PreparedMap<'_>, pixels: &[u32]) -> Result<Self, TechniqueError> {
         let unbiased = map.lookup.without_bias();
         let reading = Reading::new(map, &unbiased, pixels)?;
-        Ok(Self { map, unbiased, reading })
+        Ok(Self { map, unbiased, reading, means: Means::read(map, pixels)? })
     }
 
     /// The exact answer at a pixel and what each stage makes of it.
@@ -84,9 +92,9 @@ impl<'r> Replayer<'r> {
         let shares = self.map.lookup.select(receiver.point_in_world);
         let in_views: Vec<(f64, Chain)> =
             shares.iter().map(|(view, weight)| (weight, self.chain(pixel, &receiver, &hits, view))).collect();
-        let [coverage, bias, chords, sampling, filter, stored_texels] = blended(exact, &in_views);
         let gpu = Step { value: answered, cause: Cause::Precision };
-        Some((exact, [coverage, bias, chords, sampling, filter, stored_texels, gpu]))
+        let chain = blended(exact, &in_views);
+        Some((exact, std::array::from_fn(|stage| chain.get(stage).copied().unwrap_or(gpu))))
     }
 
     /// What each stage before the GPU's makes of a receiver in one view.
@@ -100,7 +108,7 @@ impl<'r> Replayer<'r> {
         let Some(placed) = placed else {
             // Moved out along its normal.
             let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
-            return [coverage, border, border, border, border, Step { cause: Cause::Precision, ..border }];
+            return [coverage, border, border, border, border, border, Step { cause: Cause::Precision, ..border }];
         };
         let biased = self.biased(receiver, &placed);
         // Only a blocker that the bias took away asks for the reason.
@@ -110,8 +118,9 @@ impl<'r> Replayer<'r> {
         let looked = self.looked(pixel, receiver, placed);
         let sampling = self.sampling(&looked);
         let filter = self.filter(&looked, sampling.value);
+        let moments = self.moments(&looked, filter);
         let stored_texels = Step { value: self.by_stored_texels(&looked), cause: Cause::Precision };
-        [coverage, Step { value: biased, cause }, chords, sampling, filter, stored_texels]
+        [coverage, Step { value: biased, cause }, chords, sampling, filter, moments, stored_texels]
     }
 
     fn looked(&self, pixel: u32, receiver: &Receiver, placed: Placed) -> Looked<'_> {
@@ -126,10 +135,10 @@ impl<'r> Replayer<'r> {
             Outside::Frustum => Cause::ClippingFrustum,
         };
         let border = self.map.lookup.border_visibility();
-        let exact = stretched.map_or(border, |looked| self.filter(&looked, border).value);
+        let exact = stretched.map_or(border, |looked| self.moments(&looked, self.filter(&looked, border)).value);
         let stored = stretched.map_or(border, |looked| self.by_stored_texels(&looked));
         let clipped = Step { value: exact, cause };
-        [clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
+        [clipped, clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -221,8 +230,19 @@ impl<'r> Replayer<'r> {
         Step { value, cause: if is_self { self_cause } else { Cause::FilterWidth } }
     }
 
-    /// The filter's answer with the depths that the GPU holds.
+    /// What the exact moments of the same kernel allow: more light than there is bleeds in, less is the model's doing.
+    fn moments(&self, looked: &Looked<'_>, filter: Step) -> Step {
+        let Some(means) = &self.means else { return filter };
+        let value = means.exact_visibility(&self.reading, looked);
+        let cause = if value > filter.value { Cause::LightBleeding } else { Cause::TechniqueModel };
+        Step { value, cause }
+    }
+
+    /// The filter's answer with the depths, or the means of moments, that the GPU holds.
     fn by_stored_texels(&self, looked: &Looked<'_>) -> f64 {
+        if let Some(means) = &self.means {
+            return means.stored_visibility(looked);
+        }
         self.reading.mean(Depths::Stored, looked, &mut |tap, _| self.answer(Depths::Stored, looked, tap))
     }
 

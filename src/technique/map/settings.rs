@@ -217,6 +217,16 @@ impl Settings {
         self.bias_amounts().clearance == bias::Clearance::Midpoint
     }
 
+    /// What lies beyond the border as moments take it: 0 at the near plane, 1 at the far one; `None`: the nearest texel.
+    #[must_use]
+    pub fn z_beyond(&self) -> Option<f64> {
+        match (self.seam, self.border) {
+            (Seam::Clamp, _) | (_, Border::ClampEdge) => None,
+            (Seam::PerTap, Border::Lit) => Some(1.0),
+            (Seam::PerTap, Border::Shadow) => Some(0.0),
+        }
+    }
+
     /// The bias axis's amounts for this filter.
     #[must_use]
     pub fn bias_amounts(&self) -> bias::Amounts {

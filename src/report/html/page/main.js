@@ -249,7 +249,7 @@ function openAndShow(index) {
 }
 
 /** The plot: one question at a time, since costs of different pictures do not compare. */
-const questions = [...new Set(report.runs.map(run => `${run.scene} / ${run.light}`))];
+const questions = [...new Set(report.runs.filter(run => run.cost).map(run => `${run.scene} / ${run.light}`))];
 get("trade-question").replaceChildren(...questions.map((name, i) => element("option", name, { value: i })));
 function plot() {
   const name = questions[get("trade-question").value];

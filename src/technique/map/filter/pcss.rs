@@ -43,6 +43,9 @@ impl Filter for Pcss {
     fn taps(&self, _kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
         tap(position_in_texels.floor().as_ivec2(), 1.0);
     }
+    fn texel_reads(&self, kernel: &Kernel) -> u32 {
+        kernel.search_taps + kernel.number
+    }
     fn reads_map(&self) -> bool {
         true
     }

@@ -67,6 +67,10 @@ pub trait Projection: Sync {
     fn has_linear_depth(&self) -> bool {
         false
     }
+    /// Whether there is always one view only.
+    fn has_one_view(&self) -> bool {
+        self.shader() == ONE_VIEW
+    }
     /// Whether its views are plain frusta with their apex at the light's position: q is the distance along the axis.
     fn is_frustum(&self) -> bool {
         false
