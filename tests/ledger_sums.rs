@@ -104,7 +104,6 @@ const SPECS: &[&str] = &[
     "map:filter=depth-mean6,size=150,moment_format=float16",
     "map:projection=cube,seam=clamp,filter=msm5,size=90",
     "map:projection=cascaded,seam=clamp,filter=vsm3,size=90,blend_texels=5",
-    "map:filter=vsm3,size=100,bias=midpoint",
     "volume:extrude=degenerate-quads",
     "volume:range_mask=on",
     "volume:count=z-pass,range_mask=on,scissor=on",
