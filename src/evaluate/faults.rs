@@ -38,6 +38,7 @@ const FAULTS: &[Fault] = &[
         "map",
     ),
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
+    ("map/projection/adaptive.wgsl", "<= place", "< place - 9000u", "map:projection=adaptive"),
     ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
@@ -104,7 +105,11 @@ const FAULTS: &[Fault] = &[
         "vec4f(position_in_world.xz, 0.5, 1.0)",
         ZP_PLUS,
     ),
-    ("volume/resolve.wgsl", "count == 0u", "count <= 1u", "volume"),
+    ("volume/count.wgsl", "count == 0u", "count <= 1u", "volume"),
+    ("volume/resolve.wgsl", "receivers[index].pixel", "receivers[index].pixel / 2u", "volume"),
+    ("volume/mask.wgsl", "pixel.y * picture.width", "(pixel.y / 2u) * picture.width", "hybrid"),
+    ("volume/resolve_masked.wgsl", "!= 0u", "== 0u", "hybrid"),
+    ("hybrid/classify.wgsl", "> 0.0 &&", "> 1.0 &&", "hybrid"),
 ];
 const MASKED: &str = "map:filter=pcf-edge-masked,depth_convention=forward";
 const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";

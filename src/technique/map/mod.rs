@@ -26,6 +26,7 @@ pub mod projection;
 mod reading;
 mod remedies;
 mod replay;
+mod scout;
 mod settings;
 mod texel_footprint;
 
@@ -33,6 +34,7 @@ pub use depth_format::DepthFormat;
 pub(in crate::technique) use exact_texels::ExactTexels;
 pub use lookup::{Lookup, Outside, Placed, Tap};
 pub use passes::shader_modules;
+pub(in crate::technique) use prepared::PreparedMap;
 pub use settings::{Around, Border, CasterSides, DepthMetric, Fit, NearMode, Seam, Settings};
 pub(in crate::technique) use texel_footprint::texel_footprint;
 
@@ -71,6 +73,11 @@ impl Technique for Map {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
             return Err(Unsupported::MissingFeature { what });
         }
+        let (layers, limit) = (settings.projection.most_views(&settings), gpu.limits().texture_layers);
+        if layers > limit {
+            let what = format!("maps of {layers} layers (its limit is {limit})");
+            return Err(Unsupported::MissingFeature { what });
+        }
         if settings.near_mode == NearMode::DepthClamp && !gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL) {
             let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
             return Err(Unsupported::MissingFeature { what });
@@ -87,7 +94,7 @@ impl Technique for Map {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job, None)?))
+        Ok(Box::new(PreparedMap::new(&Settings::of(spec), job, None)?))
     }
 }
 
@@ -249,7 +256,7 @@ pub(in crate::technique) fn prepare_with_silhouettes<'j>(
     job: Job<'j>,
     edges_in_world: &[[glam::DVec3; 2]],
 ) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
-    Ok(Box::new(prepared::PreparedMap::new(settings, job, Some(edges_in_world))?))
+    Ok(Box::new(PreparedMap::new(settings, job, Some(edges_in_world))?))
 }
 
 static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
