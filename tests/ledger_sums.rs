@@ -137,6 +137,26 @@ fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
     assert!(evaluated.iter().all(|count| *count >= 4), "every specification suits some lights");
 }
 
+/// What answers for the extent of a light, on the scene that has such lights.
+const SOFT_SPECS: &[&str] = &[
+    "soft:samples=4,inner=(map:size=100,filter=pcf-box3,bias=slope)",
+    "soft:samples=9,pattern=stratified,seed=3,inner=(volume)",
+    "soft:samples=3,pattern=hammersley,inner=(irregular)",
+    "soft:samples=4,pattern=grid-midpoint,inner=(map:size=100,filter=msm)",
+    "map:size=500,filter=pcss64,search_taps=40,bias=none",
+];
+
+#[test]
+fn so_they_are_for_lights_with_an_extent() {
+    let scene = shipped("area", SIZE.to_array());
+    for light in scene.lights.iter().filter(|light| light.is_area()) {
+        let shot = Shot::new(&scene, &light.name);
+        for spec in SOFT_SPECS {
+            check(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
+        }
+    }
+}
+
 fn check(what: &str, evaluation: &Evaluation<'_>) {
     let (verdict, ledger) = (&evaluation.verdict, &evaluation.ledger);
     let measured = verdict.error.signed.unwrap_or(0.0) * verdict.pixels.asked as f64;
