@@ -86,7 +86,17 @@ const SPECS: &[&str] = &[
     "map:size=256,filter=pcss",
     "map:projection=cube,size=128,filter=pcss16,search_taps=9,turn=per-pixel,depth_convention=forward,max_texels=30",
     "map:filter=pcss,size=200,bias=slope,min_texels=0,border=clamp-edge",
+    "hybrid",
+    "hybrid:size=16,widen_texels=1,map=(map:bias=slope),volume=(volume:count=mixed)",
+    "hybrid:size=1,volume=(volume:extrude=gpu,scissor=on)",
+    "hybrid:size=100,map=(map:projection=cube,bias=midpoint)",
     "map:size=300,filter=pcss16,bias=receiver-plane",
+    "map:size=300,filter=pcf-hardware3,bias=slope",
+    "map:filter=pcf-hardware,depth_convention=forward,size=200,format=depth16unorm,border=clamp-edge",
+    "map:projection=cube,size=90,filter=pcf-hardware2",
+    "map:size=200,filter=pcf-edge-masked4,bias=receiver-plane",
+    "map:projection=cascaded,size=100,filter=pcf-edge-masked9,mask_level=4,depth_convention=forward",
+    "map:size=300,filter=pcf-poisson9,turn=per-pixel,seed=3,poisson_radius_texels=5.5",
     "map:size=300,filter=vsm",
     "map:filter=vsm4,bleeding_cut=0.2,size=200,depth_convention=forward,border=shadow,fit=manual",
     "map:filter=esm5,size=256,moment_format=float16",
@@ -125,6 +135,26 @@ fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
     assert_eq!(evaluated.iter().max(), evaluated.first(), "the plain map answers for every light");
     assert!(evaluated[0] >= 14, "the scenes of the repository alone have 14 lights");
     assert!(evaluated.iter().all(|count| *count >= 4), "every specification suits some lights");
+}
+
+/// What answers for the extent of a light, on the scene that has such lights.
+const SOFT_SPECS: &[&str] = &[
+    "soft:samples=4,inner=(map:size=100,filter=pcf-box3,bias=slope)",
+    "soft:samples=9,pattern=stratified,seed=3,inner=(volume)",
+    "soft:samples=3,pattern=hammersley,inner=(irregular)",
+    "soft:samples=4,pattern=grid-midpoint,inner=(map:size=100,filter=msm)",
+    "map:size=500,filter=pcss64,search_taps=40,bias=none",
+];
+
+#[test]
+fn so_they_are_for_lights_with_an_extent() {
+    let scene = shipped("area", SIZE.to_array());
+    for light in scene.lights.iter().filter(|light| light.is_area()) {
+        let shot = Shot::new(&scene, &light.name);
+        for spec in SOFT_SPECS {
+            check(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
+        }
+    }
 }
 
 fn check(what: &str, evaluation: &Evaluation<'_>) {

@@ -101,9 +101,9 @@ fn a_stable_fit_keeps_the_texel_grid_and_a_tight_one_does_not() {
         assert!(phases.iter().all(|(_, w)| (w / width - 1.0).abs() < 1e-6 || phases.len() == 1));
         phases.iter().map(apart).fold(0.0, f64::max)
     };
-    let stable = "map:size=1024,projection=cascaded,max_distance_m=60";
+    let stable = "map:size=1024,projection=cascaded,min_distance_m=0.1,max_distance_m=60";
     assert!(spread(&phases(stable, false)) < ROUNDING_TEXELS, "{:?}", spread(&phases(stable, false)));
     assert!(spread(&phases(stable, true)) < ROUNDING_TEXELS, "turning too");
-    let far = "map:size=1024,projection=cascaded,max_distance_m=1000";
+    let far = "map:size=1024,projection=cascaded,min_distance_m=0.1,max_distance_m=1000";
     assert!(spread(&phases(far, false)) < ROUNDING_TEXELS, "far away too");
 }

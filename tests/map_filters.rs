@@ -7,6 +7,7 @@ mod support;
 
 use gnomon::cause::Cause;
 use gnomon::evaluate::{Evaluation, View};
+use std::collections::BTreeSet;
 use support::outline::{MappedOutline, band_texels};
 use support::scenes::{ask, explained, gpu, judged, shipped};
 
@@ -14,8 +15,15 @@ const SIZE: [u32; 2] = [320, 240];
 const LIGHTS: [&str; 2] = ["lamp", "sun"];
 
 /// Filters and the width of their kernels in texels: which centres they read, and how much bias they need.
-const WIDE: [(&str, f64); 5] =
-    [("pcf-box5", 5.0), ("pcf-bilinear1", 2.0), ("pcf-bilinear4", 5.0), ("pcf-poisson16", 5.0), ("pcf-poisson64", 5.0)];
+const WIDE: [(&str, f64); 7] = [
+    ("pcf-box5", 5.0),
+    ("pcf-bilinear1", 2.0),
+    ("pcf-bilinear4", 5.0),
+    ("pcf-poisson16", 5.0),
+    ("pcf-poisson64", 5.0),
+    ("pcf-poisson16,turn=per-pixel,poisson_radius_texels=3.5", 8.0),
+    ("pcf-hardware2", 3.0),
+];
 
 #[test]
 fn every_filter_errs_within_its_kernel() {
@@ -64,4 +72,100 @@ fn a_wide_kernel_needs_the_predicted_bias() {
             assert!(acne(&with("bias=slope,bias_slope=0.5")), "{light} {filter}");
         }
     }
+}
+
+/// FI-1: the values that n × n comparisons can have, and no others.
+#[test]
+fn a_box_answers_in_shares_of_its_texels() {
+    let (gpu, scene) = (gpu(), shipped("triangle", SIZE));
+    let view = View::new(&gpu, &scene).unwrap();
+    let question = ask(&view, "lamp");
+    let values = |filter: &str| -> BTreeSet<u32> {
+        let mask = judged(&view, &question, &format!("map:size=128,filter={filter}")).mask;
+        mask.pixels.iter().flatten().map(|visibility| visibility.get().to_bits()).collect()
+    };
+    for n in [1_u32, 2, 3, 4] {
+        let shares: BTreeSet<u32> = (0..=n * n).map(|lit| (lit as f32 / (n * n) as f32).to_bits()).collect();
+        let found = values(&format!("pcf-box{n}"));
+        assert!(found.is_subset(&shares) && found.len() > n as usize, "{n}: {found:?}");
+    }
+    // 5 of 9 in shadow.
+    assert!(values("pcf-box3").contains(&(4.0_f32 / 9.0).to_bits()));
+    assert!(values("pcf-bilinear2").len() > 100, "a bilinear kernel is continuous");
+}
+
+/// FI-2: the sampler's weights are those worked out by hand, within what drivers round them to.
+#[test]
+fn the_sampler_weighs_as_the_shader_does() {
+    /// Fixed-point weights of 8 bits along each axis.
+    const WEIGHT_STEP: f32 = 1.0 / 256.0;
+    let (gpu, scene) = (gpu(), shipped("triangle", SIZE));
+    let view = View::new(&gpu, &scene).unwrap();
+    for light in LIGHTS {
+        let question = ask(&view, light);
+        for n in [1, 3] {
+            for convention in ["reversed", "forward"] {
+                let mask = |filter: &str| {
+                    let typed = format!("map:size=256,filter={filter}{n},depth_convention={convention}");
+                    judged(&view, &question, &typed).mask
+                };
+                let (by_hand, sampled) = (mask("pcf-bilinear"), mask("pcf-hardware"));
+                let pairs = by_hand.pixels.iter().zip(&sampled.pixels).filter_map(|(a, b)| (*a).zip(*b));
+                let farthest = pairs.map(|(a, b)| (a.get() - b.get()).abs()).fold(0.0, f32::max);
+                assert!(farthest <= 2.0 * WEIGHT_STEP, "{light} {n} {convention}: {farthest}");
+            }
+        }
+    }
+}
+
+/// FI-6: a shortcut that holds all of the kernel changes nothing; one over fewer texels would.
+#[test]
+fn masked_kernels_answer_as_whole_ones_bit_for_bit() {
+    let (gpu, scene) = (gpu(), shipped("torus", SIZE));
+    let view = View::new(&gpu, &scene).unwrap();
+    for light in LIGHTS {
+        let question = ask(&view, light);
+        for (n, options) in [(5, "size=300"), (4, "size=512,depth_convention=forward"), (9, "size=200,bias=slope")] {
+            let mask = |filter: &str| judged(&view, &question, &format!("map:{options},filter={filter}")).mask;
+            let whole = mask(&format!("pcf-box{n}"));
+            for level in 0..=4 {
+                assert!(mask(&format!("pcf-edge-masked{n},mask_level={level}")) == whole, "{light} {n} {level}");
+            }
+            assert!(mask(&format!("pcf-edge-masked{}", n - 1)) != whole, "{light} {n}");
+        }
+    }
+}
+
+/// FI-8: turned patterns repeat with their seed, and stay within the disc that is typed.
+#[test]
+fn turned_patterns_repeat_with_their_seed() {
+    let (gpu, scene) = (gpu(), shipped("triangle", SIZE));
+    let view = View::new(&gpu, &scene).unwrap();
+    let question = ask(&view, "sun");
+    let mask = |options: &str| judged(&view, &question, &format!("map:size=256,filter=pcf-poisson8,{options}")).mask;
+    assert!(mask("turn=per-pixel,seed=4") == mask("turn=per-pixel,seed=4"));
+    assert!(mask("turn=per-pixel,seed=4") != mask("turn=per-pixel,seed=5"));
+    assert!(mask("turn=none,seed=4") == mask("turn=none,seed=5") && mask("turn=none") != mask("turn=per-pixel"));
+    let soft = |radius: &str| {
+        let mask = mask(&format!("turn=per-pixel,poisson_radius_texels={radius}"));
+        mask.pixels.iter().flatten().filter(|v| v.get() > 0.0 && v.get() < 1.0).count()
+    };
+    let [narrow, wide] = ["1", "8"].map(soft);
+    assert!(wide > 5 * narrow, "{narrow} {wide}");
+}
+
+/// FI-7: the penumbra of a kernel is as wide as the kernel, whatever the light's is; that is what its errors are for.
+#[test]
+fn against_an_area_light_the_width_of_a_kernel_is_its_error() {
+    let (gpu, scene) = (gpu(), shipped("area", SIZE));
+    let view = View::new(&gpu, &scene).unwrap();
+    let question = ask(&view, "panel");
+    let wrong = |filter: &str| {
+        let evaluation = explained(&view, &question, &format!("map:size=512,filter={filter}"));
+        let by_width = evaluation.ledger.causes.get(&Cause::FilterWidth).map_or(0.0, |share| share.sum.abs());
+        (evaluation.verdict.pixels.wrong, by_width)
+    };
+    let [narrow, wide, fitting] = ["pcf-box3", "pcf-box16", "pcss"].map(wrong);
+    assert!(fitting.0 * 4 < narrow.0.min(wide.0), "{fitting:?} {narrow:?} {wide:?}");
+    assert!(wide.1 > 0.0 && narrow.1 > 0.0);
 }

@@ -27,8 +27,10 @@ struct Lookup {
     // Whether patterns of taps are turned, for each pixel otherwise, and by which seed.
     turns: u32,
     seed: u32,
+    pattern_radius_texels: f32,
+    // Blocks of 2 to this many texels a side have their extremes known.
+    mask_level: u32,
     padding: u32,
-    padding_2: vec2u,
 }
 @group(0) @binding(2) var<uniform> lookup: Lookup;
 @group(0) @binding(3) var stored_depths: texture_depth_2d_array;
@@ -134,6 +136,10 @@ fn reference_for(reference: f32, texel: vec2i) -> f32 {
     }
     let reach_texels = max(abs(vec2f(texel) + 0.5 - own.position_in_texels), vec2f(0.5));
     return placed(own.view, own.point_in_world, own.normal_in_world, reach_texels).reference;
+}
+
+fn pattern_radius_texels() -> f32 {
+    return lookup.pattern_radius_texels;
 }
 
 // A texel of another view that stands for one beyond the side of the receiver's view.

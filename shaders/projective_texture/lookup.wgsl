@@ -39,6 +39,14 @@ fn visibility(receiver: Receiver) -> f32 {
 // Stands where a map's lookup has a depth to compare: the picture has none.
 const NO_DEPTH: f32 = 0.0;
 
+// The pattern of `pcf-poisson`, the same for every pixel.
+fn pattern_radius_texels() -> f32 {
+    return 2.0;
+}
+fn turned(place: vec2f) -> vec2f {
+    return place;
+}
+
 // Whether a texel is white; texels outside the picture are.
 fn is_lit(depth: f32, texel: vec2i) -> bool {
     if any(texel < vec2i(0)) || any(texel >= vec2i(lookup.texels)) {

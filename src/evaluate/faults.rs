@@ -49,7 +49,10 @@ const FAULTS: &[Fault] = &[
     ("map/filter/nearest.wgsl", "floor(position_in_texels)", "floor(position_in_texels + 0.25)", "map"),
     ("map/filter/pcf_box.wgsl", "- (n - 1) / 2", "- (n + 1) / 2", "map:filter=pcf-box3"),
     ("map/filter/pcf_bilinear.wgsl", "0.5 * f32(n)", "0.6 * f32(n)", "map:filter=pcf-bilinear"),
-    ("map/filter/pcf_poisson.wgsl", "RADIUS_TEXELS / 1024.0", "RADIUS_TEXELS / 900.0", "map:filter=pcf-poisson"),
+    ("map/filter/pcf_poisson.wgsl", "/ 1024.0", "/ 900.0", "map:filter=pcf-poisson"),
+    ("map/filter/pcf_hardware.wgsl", "corner + 0.5", "corner + 0.75", "map:filter=pcf-hardware2"),
+    ("map/filter/pcf_edge_masked.wgsl", "max(around.y, block.y)", "min(around.y, block.y)", MASKED),
+    ("map/extremes.wgsl", "low = min(low, depth)", "low = max(low, depth)", MASKED),
     ("map/filter/pcss.wgsl", "numbers[0].w", "0.5 * numbers[0].w", SOFTENED),
     ("map/filter/vsm.wgsl", "mean.y - mean.x * mean.x", "mean.y - mean.x", "map:filter=vsm"),
     ("map/filter/esm.wgsl", "mean.x * exp(-numbers[1].x * z)", "mean.x * exp(-numbers[1].x)", "map:filter=esm"),
@@ -102,8 +105,13 @@ const FAULTS: &[Fault] = &[
         "vec4f(position_in_world.xz, 0.5, 1.0)",
         ZP_PLUS,
     ),
-    ("volume/resolve.wgsl", "count == 0u", "count <= 1u", "volume"),
+    ("volume/count.wgsl", "count == 0u", "count <= 1u", "volume"),
+    ("volume/resolve.wgsl", "receivers[index].pixel", "receivers[index].pixel / 2u", "volume"),
+    ("volume/mask.wgsl", "pixel.y * picture.width", "(pixel.y / 2u) * picture.width", "hybrid"),
+    ("volume/resolve_masked.wgsl", "!= 0u", "== 0u", "hybrid"),
+    ("hybrid/classify.wgsl", "> 0.0 &&", "> 1.0 &&", "hybrid"),
 ];
+const MASKED: &str = "map:filter=pcf-edge-masked,depth_convention=forward";
 const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
 const PARABOLOID: &str = "map:projection=dual-paraboloid";

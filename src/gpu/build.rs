@@ -8,9 +8,9 @@ use glam::UVec2;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer, BufferUsages,
-    ColorTargetState, ComputePipeline, ComputePipelineDescriptor, DepthStencilState, Extent3d, FragmentState,
-    PrimitiveState, RenderPipeline, RenderPipelineDescriptor, Texture, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, VertexBufferLayout, VertexState,
+    ColorTargetState, CompareFunction, ComputePipeline, ComputePipelineDescriptor, DepthStencilState, Extent3d,
+    FilterMode, FragmentState, PrimitiveState, RenderPipeline, RenderPipelineDescriptor, Sampler, SamplerDescriptor,
+    Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, VertexBufferLayout, VertexState,
 };
 
 /// A render pipeline to be built.
@@ -66,6 +66,17 @@ impl Gpu {
     /// A uniform buffer that holds one value.
     pub(crate) fn uniform<T: Pod>(&self, label: &str, value: T) -> Buffer {
         self.buffer(label, &[value], BufferUsages::UNIFORM)
+    }
+
+    /// A sampler that compares with the four texels around a place and weighs the answers.
+    pub(crate) fn comparing_sampler(&self, compare: CompareFunction) -> Sampler {
+        self.device.create_sampler(&SamplerDescriptor {
+            label: Some("comparing"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            compare: Some(compare),
+            ..SamplerDescriptor::default()
+        })
     }
 
     /// Resources bound in the order of their binding numbers, from 0.

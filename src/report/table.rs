@@ -114,20 +114,25 @@ fn motion(run: &Run) -> Option<String> {
     Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
 }
 
-/// More views than these are not listed one by one: report.json has them all.
+/// Of more views than these only the least and the most biased are shown.
 const LISTED_VIEWS: usize = 8;
 
-/// How far comparisons were really moved, one line for each view; of many views only where it is most.
+/// How far comparisons were really moved, one line for each view.
 fn biases(run: &Run) -> Vec<String> {
     let typed = printable(&run.typed);
     let views = run.bias.as_deref().unwrap_or_default();
-    let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
-    let line = |bias: &EffectiveBias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told());
-    if views.len() <= LISTED_VIEWS {
-        return views.iter().map(line).collect();
+    let mut shown: Vec<&EffectiveBias> = views.iter().collect();
+    if shown.len() > LISTED_VIEWS {
+        shown.sort_by(|a, b| a.along_light.m.median.total_cmp(&b.along_light.m.median));
+        shown = vec![shown[0], shown[shown.len() - 1]];
     }
-    let most = views.iter().max_by(|a, b| a.along_light.m.max.total_cmp(&b.along_light.m.max));
-    most.map(|bias| format!("{}, the most of {} views", line(bias), views.len())).into_iter().collect()
+    let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
+    let mut lines: Vec<String> =
+        shown.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect();
+    if shown.len() < views.len() {
+        lines.push(format!("{typed}  bias in {} views between: in report.json", views.len() - shown.len()));
+    }
+    lines
 }
 
 fn heading(runs: &[Run]) -> String {

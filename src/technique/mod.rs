@@ -8,6 +8,7 @@
 mod cost;
 mod effective_bias;
 pub mod footprint;
+pub mod hybrid;
 pub mod irregular;
 pub mod lighting;
 pub mod map;
@@ -54,6 +55,7 @@ pub fn registry() -> &'static [&'static dyn Technique] {
         &planar::Planar,
         &projective_texture::ProjectiveTexture,
         &silhouette::Silhouette,
+        &hybrid::Hybrid,
         &irregular::Irregular,
         &ray_query::RayQuery,
         &soft::Soft,
@@ -68,6 +70,7 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         volume::shader_modules(),
         planar::shader_modules(),
         projective_texture::shader_modules(),
+        hybrid::shader_modules(),
         irregular::shader_modules(),
         ray_query::shader_modules(),
     ]

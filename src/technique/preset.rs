@@ -23,7 +23,7 @@ const fn engine(name: &'static str, spec: &'static str, about: &'static str) -> 
 }
 
 /// Every preset.
-pub const PRESETS: [Preset; 29] = [
+pub const PRESETS: [Preset; 30] = [
     short("planar-shear", "planar:projection=shear", "projected onto a coordinate plane by a shear"),
     short("volume-zpass", "volume:count=z-pass", "faces before the surface"),
     short("volume-zfail", "volume:count=z-fail", "faces behind the surface"),
@@ -40,16 +40,17 @@ pub const PRESETS: [Preset; 29] = [
     short("map-light-space-perspective", "map:projection=light-space-perspective", "a warp across the light"),
     short("map-adaptive", "map:projection=adaptive", "tiles refined where edges pass"),
     short("map-silhouette", "silhouette", "a map that knows the casters' outline"),
+    short("hybrid-map-volume", "hybrid", "a small map, and volumes at its silhouettes"),
     short("map-irregular", "irregular", "the light's image sampled where the receivers are"),
     engine(
         "bevy-directional",
-        "map:size=2048,filter=pcf-bilinear3,bias=none,bias_depth_m=0.02,bias_normal_texels=1.8",
+        "map:size=2048,projection=cascaded,min_distance_m=0.1,first_far_m=10,max_distance_m=150,lambda=1,filter=pcf-bilinear3,bias=none,bias_depth_m=0.02,bias_normal_texels=1.8",
         "Bevy's directional light",
     ),
     engine(
         "bevy-point",
-        "map:size=1024,filter=pcf-bilinear3,bias=none,bias_depth_m=0.08,bias_normal_texels=0.6",
-        "Bevy's point light, in one frustum",
+        "map:size=1024,projection=cube,filter=pcf-bilinear3,bias=none,bias_depth_m=0.08,bias_normal_texels=0.6",
+        "Bevy's point light",
     ),
     engine(
         "bevy-spot",
@@ -58,29 +59,29 @@ pub const PRESETS: [Preset; 29] = [
     ),
     engine(
         "godot-directional",
-        "map:size=4096,filter=pcf-poisson16,bias=none,bias_depth_m=0.1,bias_normal_texels=2",
+        "map:size=2048,projection=cascaded,first_far_m=10,max_distance_m=100,lambda=1,filter=pcf-poisson16,bias=none,bias_depth_m=0.1,bias_normal_texels=2",
         "Godot's DirectionalLight3D",
     ),
     engine(
         "filament-directional",
-        "map:size=1024,filter=pcf-bilinear2,bias=none,bias_depth_m=0.001,bias_normal_texels=1,bias_slope=2,bias_constant_ulps=1",
+        "map:size=1024,projection=light-space-perspective,filter=pcf-bilinear2,bias=none,bias_depth_m=0.001,bias_normal_texels=1,bias_slope=2,bias_constant_ulps=1",
         "Filament's sun",
     ),
     engine(
         "threejs-directional",
-        "map:size=512,filter=pcf-bilinear2,bias=none",
+        "map:size=512,width_m=10,near_m=0.5,far_m=500,filter=pcf-bilinear2,bias=none",
         "three.js's DirectionalLight: no bias at all",
     ),
     engine("threejs-spot", "map:size=512,filter=pcf-bilinear2,bias=none", "three.js's SpotLight: no bias at all"),
     engine(
         "unity-urp-directional",
-        "map:size=2048,filter=pcf-bilinear1,bias=none,bias_normal_texels=1",
+        "map:size=2048,projection=cascaded,cascades=1,max_distance_m=50,filter=pcf-bilinear1,bias=none,bias_depth_texels=1,bias_normal_texels=1",
         "Unity's Universal Render Pipeline, hard shadows",
     ),
     engine(
         "mjp-receiver-plane",
-        "map:size=2048,filter=pcf-box7,bias=closed-form,bias_depth_m=0.005",
-        "M. Pettineo's sample, with the closed form in place of his receiver plane",
+        "map:size=2048,filter=pcf-box7,bias=receiver-plane,bias_depth_m=0.005",
+        "M. Pettineo's sample",
     ),
     engine(
         "ploszajczak",

@@ -34,14 +34,14 @@ const WORKGROUP: usize = 64;
 /// Most workgroups per dimension that wgpu guarantees.
 const MAX_GROUPS: usize = 65_535;
 
-/// The asked receivers in chunks, each with room for its visibilities.
-#[derive(Debug)]
+/// The asked receivers in chunks, each with room for its visibilities. A clone shares them.
+#[derive(Debug, Clone)]
 pub struct ReceiverBuffer {
     chunks: Vec<Chunk>,
 }
 
 /// One chunk: buffers of receivers and of visibilities, entry by entry.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Chunk {
     pub(crate) receivers: Buffer,
     pub(crate) visibilities: Buffer,

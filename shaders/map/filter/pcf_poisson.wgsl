@@ -1,6 +1,5 @@
 // Twin of src/technique/map/filter/pcf_poisson.rs.
 
-const RADIUS_TEXELS: f32 = 2.0;
 // In 1024ths of the radius.
 const PATTERN = array<vec2i, 64>(
     vec2i(0, 0), vec2i(-286, -983), vec2i(973, -319), vec2i(632, 805), vec2i(-545, 865), vec2i(-992, -244),
@@ -20,7 +19,7 @@ fn filter_visibility(position_in_texels: vec2f, reference: f32) -> f32 {
     var pattern = PATTERN;
     var lit = 0u;
     for (var i = 0u; i < lookup.kernel; i++) {
-        let offset = vec2f(pattern[i]) * (RADIUS_TEXELS / 1024.0);
+        let offset = turned(vec2f(pattern[i]) * (pattern_radius_texels() / 1024.0));
         lit += u32(is_lit(reference, vec2i(floor(position_in_texels + offset))));
     }
     return f32(lit) / f32(lookup.kernel);

@@ -332,8 +332,9 @@ impl Lookup {
             reaches_by_tap: self.reaches_by_tap.into(),
             turns: kernel.turns.into(),
             seed: kernel.seed,
+            pattern_radius_texels: kernel.pattern_radius_texels as f32,
+            mask_level: kernel.mask_level,
             padding: 0,
-            padding_2: [0; 2],
         }
     }
 }
@@ -359,8 +360,9 @@ pub(super) struct LookupUniform {
     reaches_by_tap: u32,
     turns: u32,
     seed: u32,
+    pattern_radius_texels: f32,
+    mask_level: u32,
     padding: u32,
-    padding_2: [u32; 2],
 }
 
 #[cfg(test)]
@@ -394,8 +396,9 @@ mod tests {
                 reaches_by_tap,
                 turns,
                 seed,
+                pattern_radius_texels,
+                mask_level,
                 padding,
-                padding_2,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {

@@ -13,6 +13,7 @@ mod exact_texels;
 pub mod filter;
 mod lookup;
 mod lookup_facts;
+mod mask_pass;
 mod means;
 mod midpoint;
 mod moment_passes;
@@ -33,6 +34,7 @@ pub use depth_format::DepthFormat;
 pub(in crate::technique) use exact_texels::ExactTexels;
 pub use lookup::{Lookup, Outside, Placed, Tap};
 pub use passes::shader_modules;
+pub(in crate::technique) use prepared::PreparedMap;
 pub use settings::{Around, Border, CasterSides, DepthMetric, Fit, NearMode, Seam, Settings};
 pub(in crate::technique) use texel_footprint::texel_footprint;
 
@@ -92,7 +94,7 @@ impl Technique for Map {
     }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
-        Ok(Box::new(prepared::PreparedMap::new(&Settings::of(spec), job, None)?))
+        Ok(Box::new(PreparedMap::new(&Settings::of(spec), job, None)?))
     }
 }
 
@@ -114,9 +116,10 @@ fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
             "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
         ));
     }
-    if settings.filter.moments().is_some() && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
+    let compares_texels = settings.filter.moments().is_none() && !settings.filter.samples();
+    if !compares_texels && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
         return refused(format!(
-            "bias=receiver-plane compares texel by texel, filter={filter} averages before: it needs another bias"
+            "bias=receiver-plane compares texel by texel, which filter={filter} does not: it needs another bias"
         ));
     }
     if settings.filter.softens() && !settings.projection.is_frustum() {
@@ -253,7 +256,7 @@ pub(in crate::technique) fn prepare_with_silhouettes<'j>(
     job: Job<'j>,
     edges_in_world: &[[glam::DVec3; 2]],
 ) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
-    Ok(Box::new(prepared::PreparedMap::new(settings, job, Some(edges_in_world))?))
+    Ok(Box::new(PreparedMap::new(settings, job, Some(edges_in_world))?))
 }
 
 static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {

@@ -2,6 +2,7 @@
 
 use super::filter::moments::Storage;
 use super::lookup::Lookup;
+use super::mask_pass::{EXTREMES, MaskPass};
 use super::midpoint::{MIDPOINT, MidpointPass};
 use super::moment_passes::{self, MomentPasses};
 use super::outline::{POINTS, PointPass, Points, WEDGES};
@@ -53,6 +54,7 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         ("map second layer paraboloid".to_owned(), vec![CASTER_DEPTH, CASTER_PARABOLOID, SECOND_LAYER]),
         ("map midpoint".to_owned(), vec![MIDPOINT]),
         ("map gather".to_owned(), vec![GATHER]),
+        ("map depth extremes".to_owned(), vec![EXTREMES]),
         ("map moments gather".to_owned(), vec![moment_passes::GATHER]),
     ];
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
@@ -103,6 +105,7 @@ pub(super) struct MapPasses {
     lookup_bindings: Vec<BindGroup>,
     points: Option<PointPass>,
     moments: Option<MomentPasses>,
+    mask: Option<MaskPass>,
     buffer_bytes: u64,
     texel_reads: u32,
 }
@@ -154,6 +157,10 @@ impl MapPasses {
                 .zip(numbers.as_ref())
                 .map(|(moments, numbers)| MomentPasses::new(gpu, settings, moments, lookup, &all_layers, numbers));
             let means = moments.as_ref().map(MomentPasses::view);
+            let level = settings.filter.mask_level(&settings.kernel);
+            let mask = level.map(|level| MaskPass::new(gpu, lookup, &all_layers, level));
+            let extremes = mask.as_ref().map(MaskPass::view);
+            let sampler = settings.filter.samples().then(|| gpu.comparing_sampler(is_lit(lookup)));
             let bind = |chunk: &Chunk| {
                 let mut resources: Vec<(u32, BindingResource<'_>)> = vec![
                     (0, chunk.receivers.as_entire_binding()),
@@ -166,6 +173,8 @@ impl MapPasses {
                     Some(means) => resources.push((6, BindingResource::TextureView(means))),
                     None => resources.push((3, BindingResource::TextureView(&all_layers))),
                 }
+                resources.extend(extremes.as_ref().map(|extremes| (6, BindingResource::TextureView(extremes))));
+                resources.extend(sampler.as_ref().map(|sampler| (7, BindingResource::Sampler(sampler))));
                 resources.extend(numbers.as_ref().map(|numbers| (5, numbers.as_entire_binding())));
                 resources.extend(points.as_ref().map(|points| (5, BindingResource::TextureView(&points.view))));
                 gpu.bind_at(&lookup_pipeline.get_bind_group_layout(0), &resources)
@@ -174,6 +183,7 @@ impl MapPasses {
                 buffer_bytes: points.as_ref().map_or(0, PointPass::bytes)
                     + midpoint.as_ref().map_or(0, MidpointPass::bytes)
                     + moments.as_ref().map_or(0, MomentPasses::bytes)
+                    + mask.as_ref().map_or(0, MaskPass::bytes)
                     + numbers.as_ref().map_or(0, Buffer::size)
                     + views.size()
                     + uniform.size()
@@ -187,6 +197,7 @@ impl MapPasses {
                 lookup_pipeline,
                 points,
                 moments,
+                mask,
             }
         })
     }
@@ -206,6 +217,9 @@ impl MapPasses {
             }
             if let Some(points) = &self.points {
                 points.record(&mut recorder);
+            }
+            if let Some(mask) = &self.mask {
+                mask.record(&mut recorder);
             }
             if let Some(moments) = &self.moments {
                 moments.record(gpu, &mut recorder);
@@ -291,6 +305,11 @@ fn texel_reads(settings: &Settings, has_silhouettes: bool) -> u32 {
 fn all_layers(map: &Texture) -> TextureView {
     let dimension = Some(TextureViewDimension::D2Array);
     map.create_view(&TextureViewDescriptor { dimension, ..Default::default() })
+}
+
+/// How a reference compares with a stored depth where it is lit. Equality is.
+fn is_lit(lookup: &Lookup) -> CompareFunction {
+    if lookup.views[0].depth_sign > 0.0 { CompareFunction::LessEqual } else { CompareFunction::GreaterEqual }
 }
 
 /// Draws the casters into every view's layer.

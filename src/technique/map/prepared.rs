@@ -6,6 +6,7 @@ use super::projection::{Refined, View};
 use super::scout::DeviceScout;
 use super::{Placed, Settings, filter, texel_footprint};
 use crate::cause::Replay;
+use crate::gpu::PassRecord;
 use crate::mask::Mask;
 use crate::receiver::{PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
@@ -21,7 +22,8 @@ const HALFWAY: &str = "halfway to the second surface";
 /// More views than these are not listed one by one.
 const LISTED_VIEWS: usize = 8;
 
-pub(super) struct PreparedMap<'j> {
+/// A map of one light, ready to run.
+pub(in crate::technique) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
     pub(super) settings: Settings,
     pub(super) lookup: Lookup,
@@ -38,7 +40,7 @@ pub(super) struct PreparedMap<'j> {
 
 impl<'j> PreparedMap<'j> {
     /// With the edges of the casters' silhouettes for a map that draws them.
-    pub(super) fn new(
+    pub(in crate::technique) fn new(
         settings: &Settings,
         job: Job<'j>,
         silhouettes: Option<&[[DVec3; 2]]>,
@@ -64,6 +66,16 @@ impl<'j> PreparedMap<'j> {
         let silhouettes = silhouettes.map(<[_]>::to_vec);
         let settings = *settings;
         Ok(Self { job, settings, lookup, fit_facts, passes, receivers, numbers, scene_radius_m, silhouettes })
+    }
+
+    /// Draws the map and answers on the device, where the answers stay.
+    pub(in crate::technique) fn draw(&self) -> Result<Vec<PassRecord>, TechniqueError> {
+        Ok(self.passes.run(self.job.gpu, self.job.geometry, &self.receivers)?)
+    }
+
+    /// Who asks, with the answers of the last run.
+    pub(in crate::technique) fn receivers(&self) -> &ReceiverBuffer {
+        &self.receivers
     }
 
     pub(super) fn receiver(&self, pixel: u32) -> Option<Receiver> {
@@ -104,7 +116,7 @@ impl<'j> PreparedMap<'j> {
 
 impl Prepared for PreparedMap<'_> {
     fn run(&self) -> Result<Answer, TechniqueError> {
-        let passes = self.passes.run(self.job.gpu, self.job.geometry, &self.receivers)?;
+        let passes = self.draw()?;
         Ok(Answer { mask: self.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
     }
 

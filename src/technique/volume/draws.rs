@@ -3,7 +3,7 @@
 use super::assembly::Faces;
 use super::extrude::Reach;
 use super::eye::Eye;
-use super::pipelines::{Source, VolumeShader, near_pipeline, range_pipeline, volume_pipeline};
+use super::pipelines::{Source, VolumeShader, mask_pipeline, near_pipeline, range_pipeline, volume_pipeline};
 use super::quads::Quads;
 use super::range::FLAG;
 use super::settings::{Extrude, Settings};
@@ -157,7 +157,7 @@ impl<'b> Builder<'b> {
 
     fn draw(&self, pipeline: RenderPipeline, bindings: BindGroup, buffers: Option<[Buffer; 2]>, count: u32) -> Draw {
         // Volumes are drawn where the flag is set.
-        let stencil_reference = if self.settings.range_mask { FLAG } else { 0 };
+        let stencil_reference = if self.settings.has_flag() { FLAG } else { 0 };
         Draw { pipeline, bindings, buffers, count, stencil_reference }
     }
 
@@ -197,6 +197,15 @@ impl<'b> Builder<'b> {
                 Draw { pipeline, bindings, buffers: None, count: 3, stencil_reference }
             })
             .collect()
+    }
+
+    /// Sets the flag at the pixels of a mask, in a picture so many pixels wide.
+    pub(super) fn mask_draw(&mut self, mask: &Buffer, width: u32) -> Draw {
+        let pipeline = mask_pipeline(self.gpu, self.settings);
+        let picture = self.gpu.uniform("picture", [width, 0, 0, 0]);
+        self.bytes += picture.size();
+        let bindings = bind(self.gpu, &pipeline, &[&picture, mask]);
+        Draw { pipeline, bindings, buffers: None, count: 3, stencil_reference: FLAG }
     }
 
     pub(super) fn near_draws(&mut self, clip_from_caster: Mat4, corners: &[u32]) -> Vec<Draw> {

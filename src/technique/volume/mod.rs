@@ -31,6 +31,7 @@ mod scissor;
 mod settings;
 mod silhouette;
 mod states;
+mod target;
 mod volumes;
 mod winding;
 
@@ -40,6 +41,7 @@ mod order_tests;
 pub use pipelines::shader_modules;
 pub use prepared::{PixelCounts, PreparedVolume};
 pub use settings::{Caps, CasterSides, Count, Extrude, FarPlane, Format, Length, Settings};
+pub(in crate::technique) use target::Target;
 
 use super::param::Param;
 use super::{Job, Prepared, Spec, Technique, TechniqueError, Unsupported};

@@ -11,7 +11,8 @@ use crate::inspect::fixtures::{cube, scene_of, torus};
 use crate::inspect::neighbours;
 use crate::receiver::Receivers;
 use crate::scene::{LightKind, Scene};
-use crate::technique::{Job, ReceiverBuffer, Spec};
+use crate::technique::volume::target::Target;
+use crate::technique::{Job, Spec};
 use glam::{DVec3, UVec2, Vec3};
 
 /// Fisher and Yates' shuffle of whole triangles.
@@ -56,7 +57,7 @@ fn stencils(gpu: &Gpu, scene: &Scene, typed: &str) -> Vec<Vec<u8>> {
     };
     let settings = Settings::of(&Spec::parse(typed).unwrap());
     let eye = Eye::new(scene, &settings).unwrap();
-    let buffer = ReceiverBuffer::upload(gpu, &receivers, &classes).unwrap();
+    let target = Target::everywhere(&job).unwrap();
     let stencil = |seed: u64| {
         let mut volumes = Volumes::new(scene, light, &settings, &eye);
         if seed > 0 {
@@ -67,8 +68,8 @@ fn stencils(gpu: &Gpu, scene: &Scene, typed: &str) -> Vec<Vec<u8>> {
                 lists.into_iter().for_each(|list| shuffle(list, &mut random));
             }
         }
-        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &buffer, 0).unwrap();
-        passes.run(gpu, &buffer).unwrap();
+        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &target, 0).unwrap();
+        passes.run(gpu, &target.receivers).unwrap();
         passes.stencil(gpu).unwrap()
     };
     (0..=ORDERS).map(stencil).collect()

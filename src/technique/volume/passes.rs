@@ -8,20 +8,24 @@ use super::range::distances_m;
 use super::scissor::Rectangle;
 use super::settings::{FarPlane, Format, Settings};
 use super::states::Side;
+use super::target::Target;
 use super::volumes::Volumes;
 use crate::gpu::{Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::LookUp;
 use crate::technique::{Job, ReceiverBuffer};
 use wgpu::{
-    BindGroup, BindingResource, ComputePipeline, LoadOp, Operations, RenderPass, RenderPassDepthStencilAttachment,
-    StoreOp, Texture, TextureAspect, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+    BindGroup, BindingResource, Buffer, ComputePipeline, LoadOp, Operations, RenderPass,
+    RenderPassDepthStencilAttachment, StoreOp, Texture, TextureAspect, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor,
 };
 
 /// The camera's depth and stencil, and everything that is drawn into it.
 pub(super) struct VolumePasses {
     buffer: Texture,
     view: TextureView,
-    /// Passes in order, each with its draws; the first clears the stencil.
+    /// What sets the flag at the pixels of a mask.
+    mask: Option<Draw>,
+    /// Passes in order, each with its draws; the first one of all clears the stencil.
     passes: Vec<(&'static str, Vec<Draw>)>,
     scissor: Rectangle,
     resolve: ComputePipeline,
@@ -40,30 +44,23 @@ impl VolumePasses {
         settings: &Settings,
         eye: &Eye,
         volumes: &Volumes,
-        receivers: &ReceiverBuffer,
+        target: &Target,
         start: i64,
     ) -> Result<Self, GpuError> {
         check_size(job.gpu, volumes)?;
         let start = start.rem_euclid(1 << settings.counting_bits()) as u8;
-        let passes = job
-            .gpu
-            .scoped("the shadow volumes' set-up", || Self::build(job, settings, eye, volumes, receivers, start))?;
+        let passes =
+            job.gpu.scoped("the shadow volumes' set-up", || Self::build(job, settings, eye, volumes, target, start))?;
         passes.draw_scene(job, settings, eye)?;
         Ok(passes)
     }
 
-    fn build(
-        job: &Job<'_>,
-        settings: &Settings,
-        eye: &Eye,
-        volumes: &Volumes,
-        receivers: &ReceiverBuffer,
-        start: u8,
-    ) -> Self {
+    fn build(job: &Job<'_>, settings: &Settings, eye: &Eye, volumes: &Volumes, target: &Target, start: u8) -> Self {
         let size = job.scene.image_size;
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let buffer = job.gpu.texture("depth and stencil", size, settings.format.texture_format(), usage);
         let mut builder = Builder::new(job, settings, eye, volumes);
+        let mask = target.mask.as_ref().map(|mask| builder.mask_draw(mask, size.x));
         let mut passes = Vec::new();
         if settings.range_mask {
             passes.push(("range mask", builder.range_draws(eye, distances_m(job.light, eye))));
@@ -82,7 +79,7 @@ impl VolumePasses {
                 passes.push((name, draws));
             }
         }
-        let resolve = resolve_pipeline(job.gpu);
+        let resolve = resolve_pipeline(job.gpu, settings);
         let counting_mask = u8::MAX >> (u8::BITS - settings.counting_bits());
         let counting = job.gpu.uniform("counting", [u32::from(counting_mask), 0, 0, 0]);
         builder.bytes += counting.size();
@@ -90,13 +87,14 @@ impl VolumePasses {
             aspect: TextureAspect::StencilOnly,
             ..TextureViewDescriptor::default()
         });
-        let resolve_bindings = receivers.chunks().iter().map(|chunk| {
-            let resources = [
+        let resolve_bindings = target.receivers.chunks().iter().map(|chunk| {
+            let mut resources = vec![
                 chunk.receivers.as_entire_binding(),
                 chunk.visibilities.as_entire_binding(),
                 BindingResource::TextureView(&counts),
                 counting.as_entire_binding(),
             ];
+            resources.extend(target.mask.as_ref().map(Buffer::as_entire_binding));
             job.gpu.bind(&resolve.get_bind_group_layout(0), &resources)
         });
         Self {
@@ -111,6 +109,7 @@ impl VolumePasses {
             counting_mask,
             start,
             buffer,
+            mask,
             passes,
             resolve,
         }
@@ -138,8 +137,13 @@ impl VolumePasses {
     pub(super) fn run(&self, gpu: &Gpu, receivers: &ReceiverBuffer) -> Result<Vec<PassRecord>, GpuError> {
         let recorder = gpu.scoped("recording the shadow volumes", || {
             let mut recorder = Recorder::new(gpu);
+            if let Some(mask) = &self.mask {
+                let attachment = self.attachment(None, LoadOp::Clear(self.start.into()));
+                recorder.render("mask", &[None], Some(attachment), |pass| self.draw(pass, std::slice::from_ref(mask)));
+            }
             for (index, (name, draws)) in self.passes.iter().enumerate() {
-                let stencil = if index == 0 { LoadOp::Clear(self.start.into()) } else { LoadOp::Load };
+                let is_first = index == 0 && self.mask.is_none();
+                let stencil = if is_first { LoadOp::Clear(self.start.into()) } else { LoadOp::Load };
                 recorder.render(name, &[], Some(self.attachment(None, stencil)), |pass| self.draw(pass, draws));
             }
             let (pipeline, bindings) = (&self.resolve, self.resolve_bindings.as_slice());

@@ -18,7 +18,10 @@ const EXTRUDED: Wgsl = wgsl!("volume/extruded.wgsl");
 const QUADS: Wgsl = wgsl!("volume/quads.wgsl");
 const RANGE: Wgsl = wgsl!("volume/range.wgsl");
 const NEAR: Wgsl = wgsl!("volume/near.wgsl");
+const MASK: Wgsl = wgsl!("volume/mask.wgsl");
+const COUNT: Wgsl = wgsl!("volume/count.wgsl");
 const RESOLVE: Wgsl = wgsl!("volume/resolve.wgsl");
+const RESOLVE_MASKED: Wgsl = wgsl!("volume/resolve_masked.wgsl");
 const RECEIVER: Wgsl = wgsl!("shared/receiver.wgsl");
 
 /// Every shader module this family can build, as label and files: what tests parse and validate without a GPU.
@@ -30,7 +33,9 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
         ("volume quads", vec![CLIP, EXTRUSION, QUADS]),
         ("volume range", vec![RANGE]),
         ("volume near", vec![NEAR]),
-        ("volume resolve", vec![RECEIVER, RESOLVE]),
+        ("volume mask", vec![MASK]),
+        ("volume resolve", vec![RECEIVER, COUNT, RESOLVE]),
+        ("volume resolve masked", vec![RECEIVER, COUNT, RESOLVE_MASKED]),
     ]
     .map(|(label, files)| (label.to_owned(), files))
     .to_vec()
@@ -126,10 +131,27 @@ pub(super) fn range_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
     pipeline(gpu, "range mask", &[RANGE], None, primitive(None, false), depth_stencil)
 }
 
-/// Counts with the bits that count; under a range mask only where the flag is set.
+/// Sets the flag at the pixels of a mask, whatever is seen there.
+pub(super) fn mask_pipeline(gpu: &Gpu, settings: &Settings) -> RenderPipeline {
+    let replace = StencilFaceState {
+        compare: CompareFunction::Always,
+        pass_op: StencilOperation::Replace,
+        ..StencilFaceState::IGNORE
+    };
+    let stencil = StencilState { front: replace, back: replace, read_mask: 0, write_mask: FLAG.into() };
+    gpu.render_pipeline(&Drawing {
+        label: "volume mask",
+        files: &[MASK],
+        depth_stencil: Some(depth_stencil(settings, false, CompareFunction::Always, stencil)),
+        targets: &[None],
+        ..Drawing::default()
+    })
+}
+
+/// Counts with the bits that count; under a mask only where the flag is set.
 fn counting_state(settings: &Settings, faces: [StencilFaceState; 2]) -> StencilState {
     let [front, back] = faces;
-    if settings.range_mask {
+    if settings.has_flag() {
         let flagged = |face| StencilFaceState { compare: CompareFunction::Equal, ..face };
         let (read_mask, write_mask) = (FLAG.into(), (!FLAG).into());
         StencilState { front: flagged(front), back: flagged(back), read_mask, write_mask }
@@ -138,9 +160,10 @@ fn counting_state(settings: &Settings, faces: [StencilFaceState; 2]) -> StencilS
     }
 }
 
-/// Turns counts into visibilities.
-pub(super) fn resolve_pipeline(gpu: &Gpu) -> ComputePipeline {
-    gpu.compute_pipeline("volume resolve", &[RECEIVER, RESOLVE])
+/// Turns counts into visibilities, of all receivers or of those at the pixels of a mask.
+pub(super) fn resolve_pipeline(gpu: &Gpu, settings: &Settings) -> ComputePipeline {
+    let resolve = if settings.is_masked { RESOLVE_MASKED } else { RESOLVE };
+    gpu.compute_pipeline("volume resolve", &[RECEIVER, COUNT, resolve])
 }
 
 fn primitive(cull_mode: Option<Face>, unclipped_depth: bool) -> PrimitiveState {

@@ -6,13 +6,15 @@ use super::passes::VolumePasses;
 use super::range::distances_m;
 use super::settings::{FarPlane, Settings};
 use super::states::Side;
+use super::target::Target;
 use super::volumes::Volumes;
 use super::{facts, replay};
 use crate::cause::Replay;
+use crate::gpu::PassRecord;
 use crate::mask::Mask;
 use crate::receiver::Receiver;
 use crate::technique::footprint::Footprint;
-use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
+use crate::technique::{Answer, Job, Prepared, TechniqueError};
 
 /// Shadow volumes of one light, ready to run.
 pub struct PreparedVolume<'j> {
@@ -24,7 +26,7 @@ pub struct PreparedVolume<'j> {
     /// What counting starts from: the volumes counted before the surface that hold the near rectangle's middle.
     pub(super) start: i64,
     pub(super) passes: VolumePasses,
-    receivers: ReceiverBuffer,
+    target: Target,
 }
 
 impl std::fmt::Debug for PreparedVolume<'_> {
@@ -65,17 +67,31 @@ impl<'j> PreparedVolume<'j> {
     /// # Errors
     /// [`TechniqueError`]; a far plane before the near plane is [`TechniqueError::Unsupported`].
     pub fn new(settings: Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
+        let target = Target::everywhere(&job)?;
+        Self::with_target(settings, job, target)
+    }
+
+    /// The same for a target of one's own; with a mask the settings are [`Settings::masked`].
+    pub(in crate::technique) fn with_target(
+        settings: Settings,
+        job: Job<'j>,
+        target: Target,
+    ) -> Result<Self, TechniqueError> {
         let eye = Eye::new(job.scene, &settings)?;
         let volumes = Volumes::new(job.scene, job.light, &settings, &eye);
         let counter = Counter::new(job.scene, job.light, job.casters, job.adjacency, &volumes);
-        let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let start = if settings.starts_at_eye_count && volumes.near_casters.is_none() {
             counter.at(eye.near_centre(), None).before
         } else {
             0
         };
-        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &receivers, start)?;
-        Ok(Self { job, settings, eye, volumes, counter, start, passes, receivers })
+        let passes = VolumePasses::new(&job, &settings, &eye, &volumes, &target, start)?;
+        Ok(Self { job, settings, eye, volumes, counter, start, passes, target })
+    }
+
+    /// Counts volumes and answers on the device, where the answers stay.
+    pub(in crate::technique) fn draw(&self) -> Result<Vec<PassRecord>, TechniqueError> {
+        Ok(self.passes.run(self.job.gpu, &self.target.receivers)?)
     }
 
     /// The stencil that the last run left, one value per pixel, row by row from the top.
@@ -138,20 +154,20 @@ impl<'j> PreparedVolume<'j> {
     /// The stencil that other settings leave for the same question.
     pub(super) fn stencil_under(&self, settings: &Settings) -> Result<Vec<u8>, TechniqueError> {
         let volumes = Volumes::new(self.job.scene, self.job.light, settings, &self.eye);
-        let passes = VolumePasses::new(&self.job, settings, &self.eye, &volumes, &self.receivers, self.start)?;
-        passes.run(self.job.gpu, &self.receivers)?;
+        let passes = VolumePasses::new(&self.job, settings, &self.eye, &volumes, &self.target, self.start)?;
+        passes.run(self.job.gpu, &self.target.receivers)?;
         Ok(passes.stencil(self.job.gpu)?)
     }
 }
 
 impl Prepared for PreparedVolume<'_> {
     fn run(&self) -> Result<Answer, TechniqueError> {
-        let passes = self.passes.run(self.job.gpu, &self.receivers)?;
-        Ok(Answer { mask: self.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
+        let passes = self.draw()?;
+        Ok(Answer { mask: self.target.receivers.mask(self.job.gpu, self.job.receivers)?, passes })
     }
 
     fn bytes(&self) -> u64 {
-        self.passes.bytes() + self.receivers.bytes()
+        self.passes.bytes() + self.target.receivers.bytes()
     }
 
     fn facts(&self) -> Vec<(String, String)> {

@@ -31,6 +31,8 @@ pub struct Settings {
     pub scissor: bool,
     /// True to draw only where what is seen is as deep as the light's range reaches.
     pub range_mask: bool,
+    /// True to draw only at the pixels of a mask, which no specification of this family says: see [`Settings::masked`].
+    pub is_masked: bool,
     /// True to start counting before the surface with the volumes around the near plane's middle.
     pub starts_at_eye_count: bool,
     /// True where depth 1 is near.
@@ -160,6 +162,7 @@ impl Settings {
             },
             scissor: is("scissor", "on"),
             range_mask: is("range_mask", "on"),
+            is_masked: false,
             starts_at_eye_count: is("stencil_init", "eye-count"),
             reversed: is("depth_convention", "reversed"),
             format: match spec.choice("format").0 {
@@ -178,10 +181,22 @@ impl Settings {
         (sound != *self).then_some(sound)
     }
 
-    /// Bits of the stencil that count; the range mask takes the highest.
+    /// Bits of the stencil that count; a range mask and any other takes the highest.
     #[must_use]
     pub fn counting_bits(&self) -> u32 {
-        u8::BITS - u32::from(self.range_mask)
+        u8::BITS - u32::from(self.has_flag())
+    }
+
+    /// Whether the stencil's highest bit says where to count.
+    #[must_use]
+    pub fn has_flag(&self) -> bool {
+        self.range_mask || self.is_masked
+    }
+
+    /// The same volumes, counted only at the pixels of a mask.
+    #[must_use]
+    pub fn masked(self) -> Self {
+        Self { is_masked: true, ..self }
     }
 
     /// The same volumes counted by a stencil that wraps; `None` if it does.

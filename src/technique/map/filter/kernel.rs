@@ -15,6 +15,10 @@ pub struct Kernel {
     pub min_texels: f64,
     /// `pcss`: kernels and searches are no wider than this.
     pub max_texels: f64,
+    /// `pcf-poisson`: radius of the pattern.
+    pub pattern_radius_texels: f64,
+    /// `pcf-edge-masked`: blocks of 2 to this many texels a side are looked at first.
+    pub mask_level: u32,
     /// Whether patterns of taps are turned, for each pixel otherwise.
     pub turns: bool,
     /// Of these turns.
@@ -42,6 +46,8 @@ impl Kernel {
             search_taps: 16,
             min_texels: 1.0,
             max_texels: 128.0,
+            pattern_radius_texels: 2.0,
+            mask_level: 2,
             turns: false,
             seed: 0,
             is_half: false,
@@ -61,6 +67,8 @@ impl Kernel {
             search_taps: spec.integer("search_taps") as u32,
             min_texels: spec.real("min_texels"),
             max_texels: spec.real("max_texels"),
+            pattern_radius_texels: spec.real("poisson_radius_texels"),
+            mask_level: spec.integer("mask_level") as u32,
             turns: spec.choice("turn").0 == "per-pixel",
             seed: spec.integer("seed") as u32,
             is_half: spec.choice("moment_format").0 == "float16",
@@ -84,11 +92,25 @@ pub fn params() -> Vec<Param> {
     let turns = ["none", "per-pixel"].into_iter().map(Choice::plain).collect();
     vec![
         param(
+            "poisson_radius_texels",
+            "texels",
+            real(0.5, 16.0),
+            Value::Real(default.pattern_radius_texels),
+            "pcf-poisson: radius of its disc",
+        ),
+        param(
+            "mask_level",
+            "",
+            Kind::Integer { min: 0, max: 4 },
+            Value::Integer(default.mask_level.into()),
+            "pcf-edge-masked: blocks of 2 to this many texels a side are looked at first",
+        ),
+        param(
             "turn",
             "",
             Kind::Choice(turns),
             Value::Choice("none", None),
-            "pcss: whether the pattern of taps is turned by a hash of the pixel",
+            "pcf-poisson, pcss: whether the pattern of taps is turned by a hash of the pixel",
         ),
         param(
             "seed",

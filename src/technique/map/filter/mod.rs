@@ -12,6 +12,8 @@ mod msm;
 mod nearest;
 mod pcf_bilinear;
 mod pcf_box;
+mod pcf_edge_masked;
+mod pcf_hardware;
 mod pcf_poisson;
 mod pcss;
 mod turn;
@@ -37,7 +39,9 @@ pub fn registry() -> &'static [&'static dyn Filter] {
         &nearest::Nearest,
         &pcf_box::PcfBox,
         &pcf_bilinear::PcfBilinear,
+        &pcf_hardware::PcfHardware,
         &pcf_poisson::PcfPoisson,
+        &pcf_edge_masked::PcfEdgeMasked,
         &pcss::Pcss,
         &vsm::Vsm,
         &esm::Esm,
@@ -95,6 +99,14 @@ pub trait Filter: Sync {
     /// Whether each tap is compared with a bias for as far as it is, for kernels that differ by receiver.
     fn reaches_by_tap(&self) -> bool {
         false
+    }
+    /// Whether its shader compares by a sampler, four texels with one reference.
+    fn samples(&self) -> bool {
+        false
+    }
+    /// Of what blocks of texels its shader reads the extremes: 2 to this many a side.
+    fn mask_level(&self, _kernel: &Kernel) -> Option<u32> {
+        None
     }
     /// What its shader reads as `numbers`, and its twin in [`Asked::numbers`].
     fn numbers(&self, _kernel: &Kernel, _light: &Light) -> Vec<Vec4> {
@@ -160,6 +172,23 @@ mod tests {
             let at = DVec2::new(u, v);
             prop_assert_eq!(taps("pcf-box", 1, at), taps("nearest", 1, at));
             prop_assert_eq!(taps("pcf-poisson", 1, at), taps("nearest", 1, at));
+        }
+
+        /// FI-3: within a texel a box of odd width never changes, and across its sides a bilinear kernel does not jump.
+        #[test]
+        fn boxes_step_at_texels_and_bilinear_kernels_nowhere(u in 8.0..56.0_f64, v in 8.0..56.0_f64, n in 1..=16_u32) {
+            const STEP: f64 = 1e-6;
+            let at = DVec2::new(u, v);
+            let odd = 2 * (n / 2) + 1;
+            prop_assert_eq!(taps("pcf-box", odd, at), taps("pcf-box", odd, at.floor() + 0.5));
+            let lit_left_of = |edge: i32, at: DVec2| -> f64 {
+                taps("pcf-bilinear", n, at).iter().filter(|(texel, _)| texel.x < edge).map(|(_, weight)| weight).sum()
+            };
+            let on_side = DVec2::new(at.x.floor(), at.y);
+            for edge in [on_side.x as i32, on_side.x as i32 + 1] {
+                let change = lit_left_of(edge, on_side + STEP * DVec2::X) - lit_left_of(edge, on_side - STEP * DVec2::X);
+                prop_assert!(change.abs() <= 2.1 * STEP, "{}", change);
+            }
         }
 
         #[test]

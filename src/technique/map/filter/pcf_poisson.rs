@@ -1,11 +1,12 @@
-//! `pcf-poisson`: the mean of up to 64 comparisons spread evenly, but not regularly, over a disc of two texels' radius:
-//! noise in place of the steps of a box.
+//! `pcf-poisson`: the mean of up to 64 comparisons spread evenly, but not regularly, over a disc, turned for each pixel
+//! otherwise or not: noise in place of the steps of a box.
 //!
 //! The pattern is a progression of best candidates (D. Mitchell, "Spectrally Optimal Sampling for Distribution Ray
 //! Tracing", 1991): each of its points is the farthest from those before it among 4000 random ones, so its beginning of
 //! any length is spread evenly too. It begins at the centre, so one tap is `nearest`.
 
-use super::{Filter, Kernel};
+use super::turn::{TURN, turned};
+use super::{Asked, Blocker, Filter, Kernel};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::technique::param::{Choice, ChoiceNumber};
 use glam::{DVec2, IVec2};
@@ -14,8 +15,6 @@ use glam::{DVec2, IVec2};
 #[derive(Debug)]
 pub(super) struct PcfPoisson;
 
-/// Radius of the disc.
-const RADIUS_TEXELS: f64 = 2.0;
 /// What the pattern is given in: exact in f32.
 const UNITS: f64 = 1024.0;
 
@@ -38,18 +37,32 @@ impl Filter for PcfPoisson {
     fn shader(&self) -> Wgsl {
         wgsl!("map/filter/pcf_poisson.wgsl")
     }
+    fn builds_on(&self) -> &'static [Wgsl] {
+        &[TURN]
+    }
     fn radius_texels(&self, kernel: &Kernel) -> f64 {
-        if kernel.number == 1 { 0.0 } else { RADIUS_TEXELS }
+        if kernel.number == 1 { 0.0 } else { kernel.pattern_radius_texels.ceil() }
     }
     fn bias_kernel(&self, kernel: &Kernel) -> f64 {
-        0.5 + self.radius_texels(kernel)
+        if kernel.number == 1 { 0.5 } else { 0.5 + kernel.pattern_radius_texels }
     }
     fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-        for [x, y] in PATTERN.into_iter().take(kernel.number as usize) {
-            let offset = DVec2::new(x.into(), y.into()) * (RADIUS_TEXELS / UNITS);
+        for offset in offsets(kernel) {
             tap((position_in_texels + offset).floor().as_ivec2(), 1.0 / f64::from(kernel.number));
         }
     }
+    fn taps_at(&self, asked: &Asked<'_>, _blocker: Blocker<'_>, tap: &mut dyn FnMut(IVec2, f64)) {
+        for offset in offsets(asked.kernel) {
+            let place = asked.placed.position_in_texels + turned(asked.kernel, asked.pixel, offset);
+            tap(place.floor().as_ivec2(), 1.0 / f64::from(asked.kernel.number));
+        }
+    }
+}
+
+/// From the receiver, texels.
+fn offsets(kernel: &Kernel) -> impl Iterator<Item = DVec2> {
+    let scale = kernel.pattern_radius_texels / UNITS;
+    PATTERN.into_iter().take(kernel.number as usize).map(move |[x, y]| DVec2::new(x.into(), y.into()) * scale)
 }
 
 #[cfg(test)]

@@ -57,10 +57,12 @@ impl Projection for Cascaded {
         let distance = |point: DVec3| forward.dot(point - eye);
         let everything = scene.bounds().corners();
         let seen = if visible.is_empty() { &everything[..] } else { visible };
-        let near_m = scene.camera.near_m;
-        let farthest_m = seen.iter().map(|point| distance(*point)).fold(near_m, f64::max);
+        let distances = seen.iter().map(|point| distance(*point));
+        let nearest_m = distances.clone().fold(f64::INFINITY, f64::min);
+        let near_m = knobs.min_distance_m.unwrap_or(nearest_m).max(scene.camera.near_m);
+        let farthest_m = distances.fold(near_m, f64::max);
         let far_m = knobs.max_distance_m.unwrap_or(farthest_m).max(near_m * (1.0 + LEAST_WIDTH));
-        let ends = splits(knobs.cascades, knobs.lambda, near_m, far_m);
+        let ends = ends(knobs.cascades, knobs.lambda, near_m, knobs.first_far_m, far_m);
         let mut views: Vec<View> = Vec::new();
         for (i, ends) in ends.windows(2).enumerate() {
             let slice = Slice { from_m: ends[0], to_m: ends[1] };
@@ -143,7 +145,15 @@ fn texel_m(view: &View) -> f64 {
     view.site(DVec3::ZERO).texel_m().max_element()
 }
 
-/// Where slices begin and end: a mean of uniform and logarithmic splits.
+/// Where slices begin and end; what lies beyond a typed end of the first one is split among the others.
+fn ends(count: u32, lambda: f64, near_m: f64, first_far_m: Option<f64>, far_m: f64) -> Vec<f64> {
+    match first_far_m.filter(|first| count > 1 && (near_m..far_m).contains(first)) {
+        Some(first) => std::iter::once(near_m).chain(splits(count - 1, lambda, first, far_m)).collect(),
+        None => splits(count, lambda, near_m, far_m),
+    }
+}
+
+/// A mean of uniform and logarithmic splits.
 fn splits(count: u32, lambda: f64, near_m: f64, far_m: f64) -> Vec<f64> {
     let split = |i: u32| {
         let share = f64::from(i) / f64::from(count);
@@ -201,6 +211,15 @@ mod tests {
         close(0.5, [0.1, 12.819, 26.606, 46.404, 100.0]);
         close(1.0, [0.1, 0.5623, 3.162, 17.78, 100.0]);
         close(0.0, [0.1, 25.075, 50.05, 75.025, 100.0]);
+    }
+
+    #[test]
+    fn a_typed_end_of_the_first_leaves_the_rest_to_the_others() {
+        let found = ends(4, 1.0, 0.1, Some(10.0), 150.0);
+        let expected = [0.1, 10.0, 24.66, 60.82, 150.0];
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 5e-4 * b), "{found:?}");
+        let beyond = ends(4, 0.5, 0.1, Some(200.0), 100.0);
+        assert_eq!(beyond, splits(4, 0.5, 0.1, 100.0), "beyond the last end it says nothing");
     }
 
     #[test]

@@ -10,6 +10,10 @@ pub struct Knobs {
     pub cascades: u32,
     /// `cascaded`: 0 uniform splits, 1 logarithmic ones.
     pub lambda: f64,
+    /// `cascaded`: start of the first one, metres before the eye; `None`: the nearest receiver.
+    pub min_distance_m: Option<f64>,
+    /// `cascaded`: end of the first one, metres before the eye; `None`: by the formula.
+    pub first_far_m: Option<f64>,
     /// `cascaded`: end of the last one, metres before the eye; `None`: the farthest receiver.
     pub max_distance_m: Option<f64>,
     /// `cascaded`: whether each encloses its slice in a sphere and keeps to the texel grid, so that it is stable.
@@ -49,6 +53,8 @@ impl Default for Knobs {
         Self {
             cascades: 4,
             lambda: 0.5,
+            min_distance_m: None,
+            first_far_m: None,
             max_distance_m: None,
             is_stable: true,
             selects_by_projection: false,
@@ -76,6 +82,8 @@ impl Knobs {
         Self {
             cascades: spec.integer("cascades") as u32,
             lambda: spec.real("lambda"),
+            min_distance_m: spec.real_or_auto("min_distance_m"),
+            first_far_m: spec.real_or_auto("first_far_m"),
             max_distance_m: spec.real_or_auto("max_distance_m"),
             is_stable: spec.choice("cascade_fit").0 == "sphere",
             selects_by_projection: spec.choice("selection").0 == "by-projection",
@@ -113,6 +121,20 @@ pub fn params() -> Vec<Param> {
     vec![
         param("cascades", "", Kind::Integer { min: 1, max: 8 }, Value::Integer(4), "cascaded: how many"),
         param("lambda", "", real(0.0, 1.0), Value::Real(0.5), "cascaded: 0 uniform splits, 1 logarithmic ones"),
+        param(
+            "min_distance_m",
+            "m",
+            auto(1e-12, MAX_M),
+            Value::Auto,
+            "cascaded: where the first one starts; auto: at the nearest receiver",
+        ),
+        param(
+            "first_far_m",
+            "m",
+            auto(1e-12, MAX_M),
+            Value::Auto,
+            "cascaded: where the first one ends, the others being split from there; auto: by lambda, as they are",
+        ),
         param(
             "max_distance_m",
             "m",
