@@ -15,7 +15,7 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
     let size = spec.integer("size");
     let larger = || ("size", (2 * size).min(LARGEST).to_string());
     let set = |key: &'static str, value: &str| (key, value.to_owned());
-    let (_, kernel) = spec.choice("filter");
+    let (filter, kernel) = spec.choice("filter");
     let changes = match cause {
         // Acne in spite of the closed form: its cap holds it back.
         Cause::Acne if spec.choice("bias").0 == "closed-form" => {
@@ -38,6 +38,7 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::ClippingNear => vec![set("near_m", "auto"), set("pull_back_m", "auto"), set("fit", "scene")],
         Cause::ClippingFar => vec![set("far_m", "auto"), set("fit", "scene")],
         Cause::ClippingFrustum => vec![set("width_m", "auto"), set("fov_deg", "auto"), set("fit", "scene")],
+        Cause::FilterWidth if filter == "pcss" => vec![set("search_taps", "64"), set("filter", "pcss128"), larger()],
         Cause::FilterWidth if kernel > 1 => vec![larger(), set("filter", "nearest")],
         Cause::FilterWidth => vec![larger()],
         Cause::Precision => {
@@ -49,12 +50,16 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
             let finer_deg = if edge_deg > 0.0 { 0.5 * edge_deg } else { COARSEST_EDGE_DEG };
             vec![("max_edge_deg", finer_deg.to_string()), set("projection", "cube")]
         }
+        Cause::LightBleeding => vec![
+            set("bleeding_cut", "0.2"),
+            set("filter", &format!("pcf-bilinear{kernel}")),
+            set("filter", &format!("evsm{kernel}")),
+        ],
         Cause::StencilOverflow
         | Cause::OpenMesh
         | Cause::PlanarModel
         | Cause::AntiShadow
         | Cause::FalseShadowBehindPlane
-        | Cause::LightBleeding
         | Cause::TechniqueModel => Vec::new(),
     };
     let changed = changes.into_iter().filter_map(|(key, value)| spec.with(key, &value).ok());
