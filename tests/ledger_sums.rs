@@ -78,6 +78,8 @@ const SPECS: &[&str] = &[
     "map:projection=dual-paraboloid,size=101,max_edge_deg=0,bias=slope,caster_sides=away-facing",
     "map:projection=dual-paraboloid,size=60,max_edge_deg=9,bias=none,seam=clamp,filter=pcf-poisson,orientation=down",
     "map:projection=dual-paraboloid,size=3,near_m=1,near_mode=fragment-clamp,depth_convention=forward,filter=pcf-box5",
+    "map:projection=adaptive,tile_texels=16,max_tiles=70,filter=pcf-box4",
+    "map:projection=adaptive,tile_texels=33,max_tiles=20,edges_only=off,m_target=0.5,bias=slope,seam=clamp,filter=pcf-box3",
     "map:depth_metric=linear,size=300,bias=slope",
     "map:projection=cube,depth_metric=linear,depth_convention=forward,filter=pcf-box2,size=100",
     "map:projection=trapezoidal,depth_metric=linear,size=200,bias=slope",
@@ -133,6 +135,26 @@ fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
     assert_eq!(evaluated.iter().max(), evaluated.first(), "the plain map answers for every light");
     assert!(evaluated[0] >= 14, "the scenes of the repository alone have 14 lights");
     assert!(evaluated.iter().all(|count| *count >= 4), "every specification suits some lights");
+}
+
+/// What answers for the extent of a light, on the scene that has such lights.
+const SOFT_SPECS: &[&str] = &[
+    "soft:samples=4,inner=(map:size=100,filter=pcf-box3,bias=slope)",
+    "soft:samples=9,pattern=stratified,seed=3,inner=(volume)",
+    "soft:samples=3,pattern=hammersley,inner=(irregular)",
+    "soft:samples=4,pattern=grid-midpoint,inner=(map:size=100,filter=msm)",
+    "map:size=500,filter=pcss64,search_taps=40,bias=none",
+];
+
+#[test]
+fn so_they_are_for_lights_with_an_extent() {
+    let scene = shipped("area", SIZE.to_array());
+    for light in scene.lights.iter().filter(|light| light.is_area()) {
+        let shot = Shot::new(&scene, &light.name);
+        for spec in SOFT_SPECS {
+            check(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
+        }
+    }
 }
 
 fn check(what: &str, evaluation: &Evaluation<'_>) {

@@ -77,9 +77,44 @@ fn area_lights_are_answered_alike_point_by_point_and_by_an_independent_estimate(
             mitsuba.estimate(&view.casters, light, &view.receivers, truth).unwrap().expect("an area light").rejected
         };
         assert_eq!(rejected(light), [0_u32; 0], "{what}");
-        let of_moved = rejected(&moved(light, 0.3)).len();
-        assert!(of_moved > 10, "{what}: a light moved by 30 cm is rejected at {of_moved} pixels only");
     }
+}
+
+/// The estimate may miss the count by what the discrepancy of 36 points allows, 1/12, and by its noise among 10⁵ pixels: of
+/// a light half a metre wide a centimetre is a fiftieth, and no test can see it. These are about a centimetre wide.
+#[test]
+fn an_estimate_of_a_light_moved_by_a_centimetre_is_rejected() {
+    const SHRUNK: f32 = 1.0 / 64.0;
+    let gpu = Gpu::open().unwrap();
+    let scene = shipped("area", [512, 384]);
+    let view = View::new(&gpu, &scene).unwrap();
+    let mut mitsuba = mitsuba(&view);
+    for light in &scene.lights {
+        let small = shrunk(light, SHRUNK);
+        let question = view.ask(&small, &Unwatched).unwrap();
+        let mut rejected = |light: &Light| {
+            let truth = &question.truth.mask;
+            mitsuba.estimate(&view.casters, light, &view.receivers, truth).unwrap().expect("an area light").rejected
+        };
+        assert_eq!(rejected(&small), [0_u32; 0], "area / {}", light.name);
+        let of_moved = rejected(&moved(&small, 0.01)).len();
+        println!("area / {}: {of_moved} pixels", light.name);
+        assert!(of_moved > 10, "area / {}: rejected at {of_moved} pixels only", light.name);
+    }
+}
+
+/// The area light, with sides or radius times a factor.
+fn shrunk(light: &Light, factor: f32) -> Light {
+    let mut shrunk = light.clone();
+    match &mut shrunk.kind {
+        LightKind::Rectangle { half_width, half_height, .. } => {
+            *half_width *= factor;
+            *half_height *= factor;
+        }
+        LightKind::Sphere { radius_m, .. } => *radius_m *= factor,
+        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => {}
+    }
+    shrunk
 }
 
 /// Pixels that two masks answer differently.

@@ -38,6 +38,7 @@ const FAULTS: &[Fault] = &[
         "map",
     ),
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
+    ("map/projection/adaptive.wgsl", "<= place", "< place - 9000u", "map:projection=adaptive"),
     (
         "map/projection/cascaded.wgsl",
         ">= 0.0 {\n        own++",

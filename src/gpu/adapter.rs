@@ -41,6 +41,8 @@ pub struct AdapterSummary {
 pub struct LimitsSummary {
     /// Largest side of a picture or map, texels.
     pub texture_side: u32,
+    /// Most layers of a map.
+    pub texture_layers: u32,
     /// Largest storage buffer binding, bytes.
     pub storage_binding_bytes: u64,
     /// Largest buffer, bytes.

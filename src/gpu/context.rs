@@ -65,6 +65,7 @@ impl Gpu {
         let limits: Limits = self.device.limits();
         LimitsSummary {
             texture_side: limits.max_texture_dimension_2d,
+            texture_layers: limits.max_texture_array_layers,
             storage_binding_bytes: limits.max_storage_buffer_binding_size,
             buffer_bytes: limits.max_buffer_size,
         }

@@ -8,7 +8,7 @@ use wgpu::{
 };
 
 /// Most passes one recorder can take; far above what any technique needs.
-const MAX_PASSES: u32 = 512;
+const MAX_PASSES: u32 = 2048;
 
 const STATISTICS: PipelineStatisticsTypes = PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
     .union(PipelineStatisticsTypes::CLIPPER_INVOCATIONS)

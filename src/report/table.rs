@@ -7,6 +7,7 @@ use super::Report;
 use super::format::{NOTHING, grouped, percent, printable, wrapped};
 use super::model::Run;
 use super::summary::{BUDGET_NOTE, Summary, software_note};
+use crate::technique::EffectiveBias;
 use crate::verdict::{BinError, ViewError};
 use comfy_table::{
     Cell, CellAlignment, ColumnConstraint, ContentArrangement, ContentLineStyle, LineStyle, Table, Width,
@@ -113,12 +114,25 @@ fn motion(run: &Run) -> Option<String> {
     Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
 }
 
+/// Of more views than these only the least and the most biased are shown.
+const LISTED_VIEWS: usize = 8;
+
 /// How far comparisons were really moved, one line for each view.
 fn biases(run: &Run) -> Vec<String> {
     let typed = printable(&run.typed);
     let views = run.bias.as_deref().unwrap_or_default();
+    let mut shown: Vec<&EffectiveBias> = views.iter().collect();
+    if shown.len() > LISTED_VIEWS {
+        shown.sort_by(|a, b| a.along_light.m.median.total_cmp(&b.along_light.m.median));
+        shown = vec![shown[0], shown[shown.len() - 1]];
+    }
     let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
-    views.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect()
+    let mut lines: Vec<String> =
+        shown.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect();
+    if shown.len() < views.len() {
+        lines.push(format!("{typed}  bias in {} views between: in report.json", views.len() - shown.len()));
+    }
+    lines
 }
 
 fn heading(runs: &[Run]) -> String {

@@ -23,7 +23,7 @@ const fn engine(name: &'static str, spec: &'static str, about: &'static str) -> 
 }
 
 /// Every preset.
-pub const PRESETS: [Preset; 24] = [
+pub const PRESETS: [Preset; 30] = [
     short("planar-shear", "planar:projection=shear", "projected onto a coordinate plane by a shear"),
     short("volume-zpass", "volume:count=z-pass", "faces before the surface"),
     short("volume-zfail", "volume:count=z-fail", "faces behind the surface"),
@@ -33,6 +33,12 @@ pub const PRESETS: [Preset; 24] = [
     short("map-projective-texture", "projective-texture", "a picture of the casters without depth"),
     short("area-sampled", "soft", "hard shadows of points on an area light, averaged"),
     short("map-cube", "map:projection=cube", "six maps around a point light"),
+    short("map-dual-paraboloid", "map:projection=dual-paraboloid", "two hemispheres around a point light"),
+    short("map-cascaded", "map:projection=cascaded", "slices of the view, a map each"),
+    short("map-perspective", "map:projection=perspective", "a map in the camera's perspective"),
+    short("map-trapezoidal", "map:projection=trapezoidal", "what is seen, pulled to a square"),
+    short("map-light-space-perspective", "map:projection=light-space-perspective", "a warp across the light"),
+    short("map-adaptive", "map:projection=adaptive", "tiles refined where edges pass"),
     short("map-silhouette", "silhouette", "a map that knows the casters' outline"),
     short("hybrid-map-volume", "hybrid", "a small map, and volumes at its silhouettes"),
     short("map-irregular", "irregular", "the light's image sampled where the receivers are"),

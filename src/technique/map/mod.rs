@@ -26,6 +26,7 @@ pub mod projection;
 mod reading;
 mod remedies;
 mod replay;
+mod scout;
 mod settings;
 mod texel_footprint;
 
@@ -70,6 +71,11 @@ impl Technique for Map {
         let limit = gpu.limits().texture_side - if has_moments { moment_passes::side(0) } else { 0 };
         if settings.size > limit {
             let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
+            return Err(Unsupported::MissingFeature { what });
+        }
+        let (layers, limit) = (settings.projection.most_views(&settings), gpu.limits().texture_layers);
+        if layers > limit {
+            let what = format!("maps of {layers} layers (its limit is {limit})");
             return Err(Unsupported::MissingFeature { what });
         }
         if settings.near_mode == NearMode::DepthClamp && !gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL) {

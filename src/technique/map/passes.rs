@@ -232,6 +232,16 @@ impl MapPasses {
         recorder.finish("the shadow map")
     }
 
+    /// Draws the map alone.
+    pub(super) fn draw(&self, gpu: &Gpu, geometry: &Geometry) -> Result<(), GpuError> {
+        let recorder = gpu.scoped("recording a map to be read back", || {
+            let mut recorder = Recorder::new(gpu);
+            record_layers(&mut recorder, "map", &self.layers, geometry);
+            recorder
+        })?;
+        recorder.finish("a map to be read back").map(drop)
+    }
+
     /// The outline's points that the last run drew; `None` for a map without silhouettes.
     pub(super) fn points(&self, gpu: &Gpu) -> Result<Option<Points>, GpuError> {
         self.points.as_ref().map(|points| points.read(gpu)).transpose()

@@ -2,7 +2,8 @@
 
 use super::lookup::Lookup;
 use super::passes::MapPasses;
-use super::projection::View;
+use super::projection::{Refined, View};
+use super::scout::DeviceScout;
 use super::{Placed, Settings, filter, texel_footprint};
 use crate::cause::Replay;
 use crate::gpu::PassRecord;
@@ -18,11 +19,16 @@ use rayon::prelude::*;
 /// What `bias=midpoint` does to stored depths.
 const HALFWAY: &str = "halfway to the second surface";
 
+/// More views than these are not listed one by one.
+const LISTED_VIEWS: usize = 8;
+
 /// A map of one light, ready to run.
 pub(in crate::technique) struct PreparedMap<'j> {
     pub(super) job: Job<'j>,
     pub(super) settings: Settings,
     pub(super) lookup: Lookup,
+    /// What the fit has to say, for people.
+    fit_facts: Vec<(String, String)>,
     pub(super) passes: MapPasses,
     receivers: ReceiverBuffer,
     /// What the filter's shader and its twin are told.
@@ -41,9 +47,12 @@ impl<'j> PreparedMap<'j> {
     ) -> Result<Self, TechniqueError> {
         let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
         let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let views = settings.projection.fit(job.scene, job.light, settings, &visible)?;
-        let lookup = Lookup::new(views, settings, job.light);
+        let fitted = settings.projection.fit(job.scene, job.light, settings, &visible)?;
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
+        let scout = DeviceScout { job: &job, settings, receivers: &receivers };
+        let refined = settings.projection.refine(job.scene, job.light, settings, &scout)?;
+        let Refined { views, facts: fit_facts } = refined.unwrap_or(Refined { views: fitted, facts: Vec::new() });
+        let lookup = Lookup::new(views, settings, job.light);
         let own_numbers = settings.filter.numbers(&settings.kernel, job.light);
         let numbers = match settings.filter.moments() {
             Some(moments) => {
@@ -55,7 +64,8 @@ impl<'j> PreparedMap<'j> {
         let passes = MapPasses::new(job.gpu, settings, &lookup, &numbers, &receivers, silhouettes)?;
         let scene_radius_m = job.scene.bounds().radius();
         let silhouettes = silhouettes.map(<[_]>::to_vec);
-        Ok(Self { job, settings: *settings, lookup, passes, receivers, numbers, scene_radius_m, silhouettes })
+        let settings = *settings;
+        Ok(Self { job, settings, lookup, fit_facts, passes, receivers, numbers, scene_radius_m, silhouettes })
     }
 
     /// Draws the map and answers on the device, where the answers stay.
@@ -120,11 +130,15 @@ impl Prepared for PreparedMap<'_> {
                 ("light window".to_owned(), view.window.clone()),
                 ("light near, far".to_owned(), view.near_far.clone()),
             ],
-            views => views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect(),
+            views if views.len() <= LISTED_VIEWS => {
+                views.iter().map(|v| (v.name.clone(), format!("{}; {}", v.window, v.near_far))).collect()
+            }
+            views => vec![("light near, far".to_owned(), views[0].near_far.clone())],
         };
+        facts.extend(self.fit_facts.iter().cloned());
         let biases = self.bias();
         let is_alone = biases.len() == 1;
-        for bias in &biases {
+        for bias in biases.iter().filter(|_| biases.len() <= LISTED_VIEWS) {
             let label = |label: String| if is_alone { label } else { format!("{}: {label}", bias.view) };
             facts.extend(bias.facts().into_iter().map(|(of, value)| (label(of), value)));
         }

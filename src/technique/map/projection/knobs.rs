@@ -36,6 +36,16 @@ pub struct Knobs {
     pub max_edge_rad: f64,
     /// `dual-paraboloid`: whether the front half looks straight down, not where the light aims.
     pub looks_down: bool,
+    /// `adaptive`: side of a tile.
+    pub tile_texels: u32,
+    /// `adaptive`: how often a tile may be halved.
+    pub max_level: u32,
+    /// `adaptive`: how many tiles there may be.
+    pub max_tiles: u32,
+    /// `adaptive`: texels up to this size in the picture are fine enough, pixels.
+    pub m_target: f64,
+    /// `adaptive`: whether only tiles split in which depth jumps.
+    pub edges_only: bool,
 }
 
 impl Default for Knobs {
@@ -56,6 +66,11 @@ impl Default for Knobs {
             min_angle_rad: 1.0_f64.to_radians(),
             max_edge_rad: 2.0_f64.to_radians(),
             looks_down: false,
+            tile_texels: 64,
+            max_level: 6,
+            max_tiles: MOST_TILES,
+            m_target: 1.0,
+            edges_only: true,
         }
     }
 }
@@ -80,9 +95,17 @@ impl Knobs {
             min_angle_rad: spec.real("min_angle_deg").to_radians(),
             max_edge_rad: spec.real("max_edge_deg").to_radians(),
             looks_down: spec.choice("orientation").0 == "down",
+            tile_texels: spec.integer("tile_texels") as u32,
+            max_level: spec.integer("max_level") as u32,
+            max_tiles: spec.integer("max_tiles") as u32,
+            m_target: spec.real("m_target"),
+            edges_only: spec.choice("edges_only").0 == "on",
         }
     }
 }
+
+/// Each tile is a layer and a pass of its own; one pass more looks up.
+const MOST_TILES: u32 = 511;
 
 /// Far beyond any scene f32 can hold with useful precision.
 const MAX_M: f64 = 1e12;
@@ -93,6 +116,7 @@ pub fn params() -> Vec<Param> {
     let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
     let real = |min, max| Kind::Real { min, max, auto: false };
     let auto = |min, max| Kind::Real { min, max, auto: true };
+    let whole = |min: i64, max: u32| Kind::Integer { min, max: max.into() };
     let plain = |names: [&'static str; 2]| Kind::Choice(names.into_iter().map(Choice::plain).collect());
     vec![
         param("cascades", "", Kind::Integer { min: 1, max: 8 }, Value::Integer(4), "cascaded: how many"),
@@ -187,6 +211,29 @@ pub fn params() -> Vec<Param> {
             plain(["aim", "down"]),
             Value::Choice("aim", None),
             "dual-paraboloid: where the front half looks, as the light aims or straight down",
+        ),
+        param("tile_texels", "texels", whole(8, 1024), Value::Integer(64), "adaptive: side of a tile"),
+        param("max_level", "", whole(0, 12), Value::Integer(6), "adaptive: how often the map may be halved into tiles"),
+        param(
+            "max_tiles",
+            "",
+            whole(1, MOST_TILES),
+            Value::Integer(MOST_TILES.into()),
+            "adaptive: how many tiles there may be, besides no more texels than a map of that size has",
+        ),
+        param(
+            "m_target",
+            "pixels",
+            real(0.25, 16.0),
+            Value::Real(1.0),
+            "adaptive: texels up to this size in the picture are fine enough",
+        ),
+        param(
+            "edges_only",
+            "",
+            plain(["on", "off"]),
+            Value::Choice("on", None),
+            "adaptive: whether only tiles in which depth jumps are refined",
         ),
     ]
 }

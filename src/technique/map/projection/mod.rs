@@ -4,6 +4,7 @@
 //! Adding one: a file here, a WGSL file of the same stem in `shaders/map/projection/` that defines `select_views` unless
 //! there is one view only, a line in [`registry`].
 
+mod adaptive;
 mod body;
 mod cascaded;
 mod clip;
@@ -18,6 +19,7 @@ mod light_space_perspective;
 mod paraboloid;
 mod perspective;
 mod pieces;
+mod quadtree;
 mod single;
 mod site;
 mod trapezoidal;
@@ -33,7 +35,9 @@ pub use view::{Gradients, InMap, Layout, Rows, View};
 use super::Settings;
 use super::Unsupported;
 use crate::gpu::shader::{Wgsl, wgsl};
+use crate::receiver::Receiver;
 use crate::scene::{Light, Scene};
+use crate::technique::TechniqueError;
 use glam::DVec3;
 
 /// Every projection.
@@ -47,6 +51,7 @@ pub fn registry() -> &'static [&'static dyn Projection] {
         &perspective::Perspective,
         &trapezoidal::Trapezoidal,
         &light_space_perspective::LightSpacePerspective,
+        &adaptive::Adaptive,
     ]
 }
 
@@ -95,6 +100,23 @@ pub trait Projection: Sync {
         settings: &Settings,
         visible: &[DVec3],
     ) -> Result<Vec<View>, Unsupported>;
+    /// Other views in place of the fitted ones, after a look at what some hold; `None` to keep those.
+    ///
+    /// # Errors
+    /// As [`Projection::fit`], and what the device reported.
+    fn refine(
+        &self,
+        _scene: &Scene,
+        _light: &Light,
+        _settings: &Settings,
+        _scout: &dyn Scout,
+    ) -> Result<Option<Refined>, TechniqueError> {
+        Ok(None)
+    }
+    /// As many views as there may be.
+    fn most_views(&self, _settings: &Settings) -> u32 {
+        MOST_VIEWS
+    }
     /// The views that answer for a world point; the f64 twin of `select_views`.
     fn select(&self, _views: &[View], _point_in_world: DVec3) -> Shares {
         Shares::one(0)
@@ -104,6 +126,31 @@ pub trait Projection: Sync {
     fn seam_texels(&self, _views: &[View], _view: usize, _point_in_world: DVec3) -> Option<f64> {
         None
     }
+}
+
+/// Most views of projections that know how many they need: eight cascades.
+const MOST_VIEWS: u32 = 8;
+
+/// What a projection may ask before it settles on its views.
+pub trait Scout {
+    /// The receivers that are asked.
+    fn receivers(&self) -> Vec<Receiver>;
+    /// How large a texel of a view is in the picture at a receiver, pixels; `None` where the light sees it edge-on.
+    fn m(&self, view: &View, receiver: &Receiver) -> Option<f64>;
+    /// The depths of each of some views of equal size, drawn for the occasion: row by row.
+    ///
+    /// # Errors
+    /// What the device reported.
+    fn depths(&self, views: &[View]) -> Result<Vec<Vec<f64>>, TechniqueError>;
+}
+
+/// What a refinement came to.
+#[derive(Debug, Clone)]
+pub struct Refined {
+    /// The views, at least one.
+    pub views: Vec<View>,
+    /// Label and value, for people.
+    pub facts: Vec<(String, String)>,
 }
 
 /// Which views answer for a point, by index, and with which weights: one, or two that are blended.
