@@ -39,7 +39,12 @@ const FAULTS: &[Fault] = &[
     ),
     ("map/projection/cube.wgsl", "> dot(", "< dot(", "map:projection=cube"),
     ("map/projection/adaptive.wgsl", "<= place", "< place - 9000u", "map:projection=adaptive"),
-    ("map/projection/cascaded.wgsl", ">= 0.0 {\n        own++", "<= 0.0 {\n        own++", "map:projection=cascaded"),
+    (
+        "map/projection/cascaded.wgsl",
+        ">= 0.0 {\n        own++",
+        "<= 0.0 {\n        own++",
+        "map:projection=cascaded,size=64",
+    ),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
     ("map/second_layer.wgsl", "<= SAME_LAYER", ">= SAME_LAYER", "map:bias=midpoint"),

@@ -1,6 +1,6 @@
 //! A hybrid replayed: every pixel by the ledger of what answered it. The map's stages come first, then the volumes'; a
 //! pixel passes through the others' unchanged. Which of the two answers is the GPU's own decision: where a silhouette is
-//! missed, the map's `sampling` is to blame.
+//! missed, the map's `sampling` is to blame. Where the map answers though its texels disagree, the device is.
 
 use super::prepared::PreparedHybrid;
 use crate::cause::{Cause, Replay, Stage};
@@ -35,7 +35,9 @@ fn joined(pixels: &[u32], first: &Replay, second: &Replay) -> Replay {
                 // Not begun yet.
                 (replay.exact[*slot], Cause::Precision)
             } else {
-                (replay.stages[before_gpu(replay) - 1].values[*slot], Cause::Precision)
+                let told = replay.stages[before_gpu(replay) - 1].values[*slot];
+                // Texels that disagree should have called for the exact answer, not for their mean.
+                (if told > 0.0 && told < 1.0 { replay.exact[*slot] } else { told }, Cause::Precision)
             }
         };
         let (values, causes) = slots.iter().map(at).unzip();
@@ -75,7 +77,7 @@ mod tests {
         let expected = [
             ("sampling", vec![0.0, 0.0]),
             ("filter", vec![0.0, 0.5]),
-            ("near plane", vec![1.0, 0.5]),
+            ("near plane", vec![1.0, 1.0]),
             (GPU, vec![1.0, 0.25]),
         ];
         assert_eq!(told, expected);
