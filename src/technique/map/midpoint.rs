@@ -5,8 +5,8 @@
 //! surface is told from itself whatever the map's format.
 
 use super::Settings;
+use super::layers::{Layer, layer_view, layers, record_layers};
 use super::lookup::Lookup;
-use super::passes::{Layer, layer_view, layers, record_layers};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Drawing, Geometry, Gpu, Recorder};
 use bytemuck::{Pod, Zeroable};

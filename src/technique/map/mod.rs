@@ -11,6 +11,7 @@ pub mod bias;
 mod depth_format;
 mod exact_texels;
 pub mod filter;
+mod layers;
 mod lookup;
 mod lookup_facts;
 mod mask_pass;
