@@ -11,6 +11,8 @@ use glam::{DMat4, DVec2, DVec3, UVec2};
 pub struct Footprint {
     /// Texel coordinates of the receiver.
     pub position_in_texels: DVec2,
+    /// The texel's sides along u and along v in the picture, pixels, y down.
+    pub sides_px: [DVec2; 2],
     /// Largest extent of the texel's sides in the picture, pixels.
     pub m: f64,
     /// Longest diagonal of the texel in the picture, pixels.
@@ -63,6 +65,7 @@ impl Footprint {
         let cosine = |direction: DVec3| input.normal_in_world.dot(direction).abs();
         Some(Self {
             position_in_texels: input.position_in_texels,
+            sides_px: [u, v],
             m: u.length().max(v.length()),
             m_diagonal: (u + v).length().max((u - v).length()),
             perspective_factor: input.texel_m / input.pixel_m,
