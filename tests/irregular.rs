@@ -5,10 +5,11 @@
 
 mod support;
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, IVec2, UVec2, Vec3};
 use gnomon::evaluate::{Effort, View, evaluate};
-use gnomon::mask::Mask;
-use gnomon::scene::Placement;
+use gnomon::mask::{Mask, TruthMask};
+use gnomon::receiver::Receiver;
+use gnomon::scene::{Placement, Scene};
 use gnomon::technique::irregular::PreparedIrregular;
 use gnomon::watch::Unwatched;
 use support::scenes::{ask, gpu, placed, shadowed, shipped, with_triangles};
@@ -73,6 +74,54 @@ fn the_grid_changes_nothing() {
         for grid in [1, 3, 64, 2000] {
             assert!(mask(grid) == usual, "{name}: a grid of {grid} cells answers otherwise");
         }
+    }
+}
+
+/// How far off the rim of its triangle f64 puts a receiver that was moved onto it, relative to its coordinates.
+const ON_RIM: f64 = 1e-14;
+
+/// Whether a receiver lies on the rim of its own triangle, and so in the plane of the next one too.
+fn is_on_rim(scene: &Scene, receiver: &Receiver) -> bool {
+    let point = receiver.point_in_world;
+    let [a, b, c] = scene.triangle_in_world(receiver.triangle);
+    [(a, b), (b, c), (c, a)].iter().any(|&(from, to)| {
+        let off_line_m = (to - from).normalize().cross(point - from).length();
+        off_line_m < ON_RIM * (point.length() + from.length())
+    })
+}
+
+/// Whether truth differs between a pixel and one of the eight around it.
+fn is_beside_an_edge(truth: &TruthMask, pixel: u32) -> bool {
+    let size = truth.size.as_ivec2();
+    let at = |place: IVec2| truth.pixels[(place.y * size.x + place.x) as usize];
+    let place = IVec2::new(pixel as i32 % size.x, pixel as i32 / size.x);
+    let steps = (-1..=1).flat_map(|y| (-1..=1).map(move |x| IVec2::new(x, y)));
+    let around = steps.map(|step| (place + step).clamp(IVec2::ZERO, size - 1));
+    around.into_iter().any(|other| at(other) != at(place))
+}
+
+/// Far from every shadow's edge, rounding can only decide at a fold of the receiver's own surface.
+#[test]
+fn away_from_true_edges_only_receivers_on_a_rim_are_wrong() {
+    for (name, light) in [("posts", "sun"), ("torus", "lamp"), ("room", "lamp")] {
+        let scene = shipped(name, [512, 384]);
+        let shot = Shot::new(&scene, light);
+        wrong_and_in_doubt(&shot, name);
+        let truth = &shot.question.truth.mask;
+        for (pixel, _) in shot.evaluate("irregular").ledger.wrong {
+            let receiver = shot.view.receivers.pixels[pixel as usize].unwrap();
+            let is_explained = is_beside_an_edge(truth, pixel) || is_on_rim(&scene, &receiver);
+            assert!(is_explained, "{name}: pixel {pixel} is wrong amid its like");
+        }
+        // Control: hardly any other pixel would be excused.
+        let asked = shot.view.receivers.pixels.iter().enumerate().filter_map(|(pixel, r)| Some((pixel as u32, (*r)?)));
+        let (mut excused, mut all) = (0, 0);
+        for (pixel, receiver) in asked {
+            all += 1;
+            excused += u32::from(!is_beside_an_edge(truth, pixel) && is_on_rim(&scene, &receiver));
+        }
+        println!("{name}: {excused} of {all} receivers lie on a rim away from shadow edges");
+        assert!(excused * 1000 < all, "{name}: {excused} of {all}");
     }
 }
 

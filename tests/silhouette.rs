@@ -1,12 +1,16 @@
 //! Silhouette maps: straight edges are followed between texel centres, far better than by a map of the same size and
-//! better than by one of sixteen times the texels; what corners agree on is a map's answer.
+//! better than by one of sixteen times the texels; what corners agree on is a map's answer, and outlines that the light
+//! does not see leave nothing.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail by panicking")]
 
 mod support;
 
+use glam::Vec3;
 use gnomon::evaluate::View;
-use support::scenes::{ask, gpu, judged, shipped};
+use gnomon::mask::Mask;
+use gnomon::scene::Scene;
+use support::scenes::{ask, gpu, judged, scene_of_texts, shipped, with_triangles};
 
 const SIZE: [u32; 2] = [400, 300];
 /// Scenes whose shadow edges are images of mesh edges.
@@ -52,8 +56,58 @@ fn the_depth_convention_matters_little() {
     let question = ask(&view, "lamp");
     let mask = |typed: &str| judged(&view, &question, typed).mask;
     let (reversed, forward) = (mask("silhouette"), mask("silhouette:depth_convention=forward"));
-    let differing =
-        |other: &gnomon::mask::Mask| reversed.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
+    let differing = |other: &Mask| reversed.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
     assert!(differing(&forward) < 60, "{}", differing(&forward));
     assert!(differing(&mask("silhouette:size=64")) > 200, "another grid is another answer");
+}
+
+/// A roof whose shadow ends on a plate below it, over a floor.
+const ROOF_AND_PLATE: (&str, &str) = (
+    "about = \"a roof whose shadow ends on a plate\"
+size = [400, 300]
+[camera]
+eye = [3.1, 2.6, 0.4]
+target = [0.0, 1.0, 0.1]
+fov_y_deg = 50.0
+[[mesh]]
+file = \"model.obj\"
+[[light]]
+name = \"sun\"
+kind = \"directional\"
+direction = [0.05, -1.0, 0.03]
+intensity = [1.0, 1.0, 1.0]
+",
+    "o Floor\nv -3 0 -3\nv -3 0 3\nv 3 0 3\nv 3 0 -3\nf 1 2 3 4
+o Plate\nv -2 1 -2\nv -2 1 2\nv 2 1 2\nv 2 1 -2\nf 5 6 7 8
+o Roof\nv -2 3 -2\nv -2 3 2\nv 0.07 3 2\nv -0.12 3 -2\nf 9 10 11 12
+",
+);
+
+/// Needles under the roof's rim: too thin for any texel centre to meet, so that a map knows them by their outline alone.
+fn with_needles(scene: &Scene, height_m: f32) -> Scene {
+    const WIDTH_M: f32 = 1e-5;
+    let needle = |i: i32| {
+        let along = 0.23 * i as f32 + 0.011;
+        let start = Vec3::new(-0.6, height_m, along - 0.3);
+        [start, start + WIDTH_M * Vec3::Z, Vec3::new(0.6, height_m, along + 0.2)]
+    };
+    with_triangles(scene, &(-5..=5).map(needle).collect::<Vec<_>>())
+}
+
+#[test]
+fn hidden_outlines_leave_no_points() {
+    let (gpu, scene) = (gpu(), scene_of_texts(ROOF_AND_PLATE.0, ROOF_AND_PLATE.1));
+    let mask = |scene: &Scene| -> Mask {
+        let view = View::new(&gpu, scene).unwrap();
+        let question = ask(&view, "sun");
+        judged(&view, &question, "silhouette:size=64").mask
+    };
+    let bare = mask(&scene);
+    let changed = |height_m: f32| {
+        let other = mask(&with_needles(&scene, height_m));
+        bare.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count()
+    };
+    assert_eq!(changed(0.5), 0, "the plate hides what is under it from the light");
+    // Control: the same needles between roof and plate bend the rim's shadow, which passes through the same cells.
+    assert!(changed(1.5) > 50, "{}", changed(1.5));
 }

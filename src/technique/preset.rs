@@ -23,7 +23,7 @@ const fn engine(name: &'static str, spec: &'static str, about: &'static str) -> 
 }
 
 /// Every preset.
-pub const PRESETS: [Preset; 30] = [
+pub const PRESETS: [Preset; 31] = [
     short("planar-shear", "planar:projection=shear", "projected onto a coordinate plane by a shear"),
     short("volume-zpass", "volume:count=z-pass", "faces before the surface"),
     short("volume-zfail", "volume:count=z-fail", "faces behind the surface"),
@@ -32,6 +32,7 @@ pub const PRESETS: [Preset; 30] = [
     short("volume-per-triangle", "volume:count=z-fail,shape=per-triangle", "one volume per triangle"),
     short("map-projective-texture", "projective-texture", "a picture of the casters without depth"),
     short("area-sampled", "soft", "hard shadows of points on an area light, averaged"),
+    short("pcss", "map:filter=pcss", "penumbrae as wide as the blockers' mean depth says"),
     short("map-cube", "map:projection=cube", "six maps around a point light"),
     short("map-dual-paraboloid", "map:projection=dual-paraboloid", "two hemispheres around a point light"),
     short("map-cascaded", "map:projection=cascaded", "slices of the view, a map each"),
