@@ -42,10 +42,7 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
-        let lines = |run: &Run| {
-            [seams(run), jitter(run), motion(run)].into_iter().flatten().chain(biases(run)).collect::<Vec<_>>()
-        };
-        for line in runs.iter().flat_map(lines) {
+        for line in runs.iter().flat_map(details) {
             wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
         }
         text.push('\n');
@@ -72,6 +69,11 @@ fn block(runs: &[Run], rows: &[[String; 6]], widths: [u16; 6]) -> String {
         text.push_str(&format!("{}  {}: {why}\n", printable(&run.typed), Summary::verdictless(run)));
     }
     text
+}
+
+/// What else is known of a run, a line each: its errors near seams, over texel phases and in motion, and its bias.
+pub(super) fn details(run: &Run) -> Vec<String> {
+    [seams(run), jitter(run), motion(run)].into_iter().flatten().chain(biases(run)).collect()
 }
 
 /// Texels around seams that a table tells apart from the rest.

@@ -3,6 +3,7 @@
 use crate::report::format::{grouped, or_nothing, significant};
 use crate::report::model::{Report, Run, Status};
 use crate::report::summary::{BUDGET_NOTE, Summary, software_note};
+use crate::report::table;
 use serde::Serialize;
 
 /// A run in the summary.
@@ -133,6 +134,15 @@ pub(super) fn cost_rows(report: &Report) -> Vec<CostRow> {
     report.runs.iter().filter_map(row).collect()
 }
 
+/// What the table of a terminal tells below its runs.
+pub(super) fn details(report: &Report) -> Vec<String> {
+    let lines = |run: &Run| {
+        let of = format!("{} / {}", run.scene, run.light);
+        table::details(run).into_iter().map(move |line| format!("{of}: {line}"))
+    };
+    report.runs.iter().flat_map(lines).collect()
+}
+
 /// What the summary's marks mean.
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let doubtful = Summary::any_doubtful_budget(report).then(|| BUDGET_NOTE.to_owned());
@@ -159,5 +169,6 @@ mod tests {
         assert_eq!(order, [(5, "over"), (0, "over"), (3, "over"), (2, "failed"), (4, "met"), (1, "unsupported")]);
         assert!(rows.iter().all(|row| row.has_pictures == (row.index == 4)));
         assert_eq!(cost_rows(&report).len(), 4);
+        assert!(details(&report)[0].starts_with("kitchen / lamp: map:size=512  "));
     }
 }
