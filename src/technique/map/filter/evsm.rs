@@ -5,54 +5,30 @@
 //! slope. Assumes that one warp or the other tells the blockers apart. Known failures: what both leave (`light-bleeding`);
 //! exponents whose square the format cannot hold, 2 c > 88.7 in 32 bits and > 11.09 in 16 (`precision`).
 
-use super::moments::{self, Moments, OWN, chebyshev};
-use super::pcf_bilinear::PcfBilinear;
-use super::{Filter, Kernel};
+use super::Kernel;
+use super::moments::{Moments, OWN, chebyshev};
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::scene::Light;
-use crate::technique::param::Choice;
-use glam::{DVec2, DVec4, IVec2, Vec4};
+use glam::{DVec4, Vec4};
 
 /// Mean and mean square of both warps.
 #[derive(Debug)]
 pub(super) struct Evsm;
 
-impl Filter for Evsm {
-    fn choice(&self) -> Choice {
-        moments::choice("evsm")
+impl Moments for Evsm {
+    fn name(&self) -> &'static str {
+        "evsm"
     }
-    fn shader(&self) -> Wgsl {
+    fn wgsl(&self) -> Wgsl {
         wgsl!("map/filter/evsm.wgsl")
     }
-    fn builds_on(&self) -> &'static [Wgsl] {
-        moments::LOOKUP
+    fn own_numbers(&self, kernel: &Kernel) -> DVec4 {
+        DVec4::new(
+            kernel.exponent.unwrap_or(if kernel.is_half { 5.0 } else { 40.0 }),
+            kernel.negative_exponent,
+            kernel.min_variance,
+            kernel.bleeding_cut,
+        )
     }
-    fn radius_texels(&self, kernel: &Kernel) -> f64 {
-        PcfBilinear.radius_texels(kernel)
-    }
-    fn bias_kernel(&self, kernel: &Kernel) -> f64 {
-        PcfBilinear.bias_kernel(kernel)
-    }
-    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
-        PcfBilinear.taps(kernel, position_in_texels, tap);
-    }
-    fn numbers(&self, kernel: &Kernel, _light: &Light) -> Vec<Vec4> {
-        vec![
-            DVec4::new(
-                kernel.exponent.unwrap_or(if kernel.is_half { 5.0 } else { 40.0 }),
-                kernel.negative_exponent,
-                kernel.min_variance,
-                kernel.bleeding_cut,
-            )
-            .as_vec4(),
-        ]
-    }
-    fn moments(&self) -> Option<&dyn Moments> {
-        Some(self)
-    }
-}
-
-impl Moments for Evsm {
     fn count(&self) -> u32 {
         4
     }

@@ -4,13 +4,21 @@
 //! z is depth from the light: 0 at the near plane, 1 at the far one. The means are taken over n × n texels and looked up
 //! bilinearly, which together weighs texels as `pcf-bilinear` does. Formulas: docs/map.md#moments.
 
-use super::NUMBERS;
+use super::pcf_bilinear::PcfBilinear;
+use super::{Filter, Kernel, NUMBERS};
 use crate::gpu::shader::{Wgsl, wgsl};
+use crate::scene::Light;
 use crate::technique::param::{Choice, ChoiceNumber};
-use glam::{DVec4, Vec4};
+use glam::{DVec2, DVec4, IVec2, Vec4};
 
 /// A filter's own part.
 pub trait Moments: Sync {
+    /// The filter's name.
+    fn name(&self) -> &'static str;
+    /// The WGSL that defines `moments_of` and `bound`.
+    fn wgsl(&self) -> Wgsl;
+    /// What that is told.
+    fn own_numbers(&self, kernel: &Kernel) -> DVec4;
     /// How many there are: 1, 2 or 4.
     fn count(&self) -> u32;
     /// Of one depth; the f64 twin of `moments_of`.
@@ -20,12 +28,39 @@ pub trait Moments: Sync {
     fn bound(&self, numbers: &[Vec4], z: f64, mean: DVec4) -> f64;
 }
 
+impl<M: Moments> Filter for M {
+    fn choice(&self) -> Choice {
+        Choice { name: self.name(), number: Some(ChoiceNumber { min: 1, max: 32, default: 3 }) }
+    }
+    fn shader(&self) -> Wgsl {
+        self.wgsl()
+    }
+    fn builds_on(&self) -> &'static [Wgsl] {
+        LOOKUP
+    }
+    fn radius_texels(&self, kernel: &Kernel) -> f64 {
+        PcfBilinear.radius_texels(kernel)
+    }
+    fn bias_kernel(&self, kernel: &Kernel) -> f64 {
+        PcfBilinear.bias_kernel(kernel)
+    }
+    fn taps(&self, kernel: &Kernel, position_in_texels: DVec2, tap: &mut dyn FnMut(IVec2, f64)) {
+        PcfBilinear.taps(kernel, position_in_texels, tap);
+    }
+    fn numbers(&self, kernel: &Kernel, _light: &Light) -> Vec<Vec4> {
+        vec![self.own_numbers(kernel).as_vec4()]
+    }
+    fn moments(&self) -> Option<&dyn Moments> {
+        Some(self)
+    }
+}
+
 /// Means that a lookup reads.
 pub(super) const READS: u32 = 4;
 /// `z_of` of the shaders.
 const Z: Wgsl = wgsl!("map/moments/z.wgsl");
 /// What lookups of moment filters build on.
-pub(super) const LOOKUP: &[Wgsl] = &[NUMBERS, Z, CHEBYSHEV, wgsl!("map/moments/lookup.wgsl")];
+const LOOKUP: &[Wgsl] = &[NUMBERS, Z, CHEBYSHEV, wgsl!("map/moments/lookup.wgsl")];
 const CHEBYSHEV: Wgsl = wgsl!("map/moments/chebyshev.wgsl");
 /// The means along rows, and of those along columns.
 const ROWS: Wgsl = wgsl!("map/moments/rows.wgsl");
@@ -104,11 +139,6 @@ pub(in crate::technique::map) fn visibility(moments: &dyn Moments, numbers: &[Ve
 /// P. Chebyshev's one-sided inequality: how much can lie at z or beyond, of what has that mean and variance.
 pub(super) fn chebyshev(z: f64, mean: f64, variance: f64) -> f64 {
     if z <= mean { 1.0 } else { variance / (variance + (z - mean) * (z - mean)) }
-}
-
-/// A moment filter's name with the texels that its means go over.
-pub(super) fn choice(name: &'static str) -> Choice {
-    Choice { name, number: Some(ChoiceNumber { min: 1, max: 32, default: 3 }) }
 }
 
 #[cfg(test)]
