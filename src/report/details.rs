@@ -17,7 +17,7 @@ pub(super) struct Detail {
 /// All that is known, in the order in which it is shown.
 pub(super) fn details(run: &Run) -> Vec<Detail> {
     let labelled = |label, text: Option<String>| text.map(|text| Detail { label, text });
-    let once = [labelled("seams", seams(run)), labelled("phases", phases(run)), labelled("motion", motion(run))];
+    let once = [labelled("seams", seams(run)), labelled("jitter", jitter(run)), labelled("motion", motion(run))];
     let biases = biases(run.bias.as_deref().unwrap_or_default());
     once.into_iter().flatten().chain(biases.into_iter().map(|text| Detail { label: "bias", text })).collect()
 }
@@ -44,11 +44,11 @@ fn seams(run: &Run) -> Option<String> {
 }
 
 /// What shifting the texel grid of a run does to its share of wrong pixels.
-fn phases(run: &Run) -> Option<String> {
+fn jitter(run: &Run) -> Option<String> {
     let jitter = run.jitter?;
     let [mean, min, max] =
         [jitter.wrong_fraction.mean, jitter.wrong_fraction.min, jitter.wrong_fraction.max].map(percent);
-    Some(format!("{} of the texel grid: {mean} wrong on average, {min} to {max}", jitter.phases))
+    Some(format!("{} texel phases: {mean} wrong on average, {min} to {max}", jitter.phases))
 }
 
 /// How much of a run flips from frame to frame although the truth does not.

@@ -174,7 +174,7 @@ mod tests {
             "1.25*",
             "EXCEEDED",
             "\nmap:size=512\n  seams   in the worst of 2 views, near: ",
-            "\n  phases  2 of the texel grid: 37.5 % wrong",
+            "\n  jitter  2 texel phases: 37.5 % wrong",
             "\n  bias    4.00e-2 m = 1.00 texels along the light",
         ] {
             assert!(text.contains(shown), "{shown} in\n{text}");
