@@ -149,7 +149,10 @@ fn so_they_are_for_lights_with_an_extent() {
     for light in scene.lights.iter().filter(|light| light.is_area()) {
         let shot = Shot::new(&scene, &light.name);
         for spec in SOFT_SPECS {
-            assert_adds_up(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
+            assert_adds_up(
+                &format!("area, light '{}', {spec}", light.name),
+                &shot.evaluate_spec(&shot.supported(spec)),
+            );
         }
     }
 }
