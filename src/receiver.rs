@@ -38,6 +38,29 @@ pub enum PixelClass {
     Asked,
 }
 
+/// What is asked about one light in one picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// The receivers of all pixels.
+    pub receivers: &'a Receivers,
+    /// What the light means for each.
+    pub classes: &'a [PixelClass],
+}
+
+impl<'a> Asked<'a> {
+    /// The receivers whose class is [`PixelClass::Asked`], row by row from the top.
+    pub fn iter(self) -> impl Iterator<Item = Receiver> + 'a {
+        let with_class = self.receivers.pixels.iter().zip(self.classes);
+        with_class.filter(|(_, class)| **class == PixelClass::Asked).filter_map(|(pixel, _)| *pixel)
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub fn points(self) -> Vec<DVec3> {
+        self.iter().map(|receiver| receiver.point_in_world).collect()
+    }
+}
+
 impl Receivers {
     /// Intersects every pixel-centre ray with the triangle that the G-buffer found there (`triangles`: one entry per
     /// pixel of the scene's picture, row by row from the top).

@@ -7,8 +7,8 @@ mod support;
 
 use glam::UVec2;
 use gnomon::cause::Replay;
-use gnomon::evaluate::Evaluation;
-use gnomon::verdict::{LedgerError, RESIDUE_ABOVE, entries_of_pixel, ledger};
+use gnomon::verdict::{LedgerError, RESIDUE_ABOVE, ledger};
+use support::ledger::assert_adds_up;
 use support::scenes::shipped;
 use support::shot::{Shot, shipped_scenes};
 
@@ -119,9 +119,6 @@ const SPECS: &[&str] = &[
     "volume:count=mixed,caster_sides=all,extrude=degenerate-quads,stencil_init=eye-count",
 ];
 
-/// Each pixel's residue may be as large as [`RESIDUE_ABOVE`], and no picture here has more than 10⁴ pixels.
-const SUM_ROUNDING: f64 = 1e-6;
-
 #[test]
 fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
     let mut evaluated = vec![0; SPECS.len()];
@@ -132,7 +129,7 @@ fn the_contributions_of_all_causes_are_the_error_in_every_scene() {
                 let what = format!("{}, light '{}', {spec}", scene.name, light.name);
                 // Cascades are for the sun, cubes for lamps, and a lamp among what is seen has no perspective map.
                 let Some(evaluation) = shot.evaluate_if_supported(&shot.supported(spec)) else { continue };
-                check(&what, &evaluation);
+                assert_adds_up(&what, &evaluation);
                 *evaluated += 1;
             }
         }
@@ -158,25 +155,8 @@ fn so_they_are_for_lights_with_an_extent() {
     for light in scene.lights.iter().filter(|light| light.is_area()) {
         let shot = Shot::new(&scene, &light.name);
         for spec in SOFT_SPECS {
-            check(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
+            assert_adds_up(&format!("area, light '{}', {spec}", light.name), &shot.evaluate_spec(&shot.supported(spec)));
         }
-    }
-}
-
-fn check(what: &str, evaluation: &Evaluation<'_>) {
-    let (verdict, ledger) = (&evaluation.verdict, &evaluation.ledger);
-    let measured = verdict.error.signed.unwrap_or(0.0) * verdict.pixels.asked as f64;
-    let booked: f64 = ledger.causes.values().map(|share| share.sum).sum();
-    assert!((booked - measured).abs() <= SUM_ROUNDING, "{what}: booked {booked}, measured {measured}");
-    let named: u64 = ledger.causes.values().map(|share| share.pixels).sum();
-    assert_eq!((named, ledger.wrong.len() as u64), (verdict.pixels.wrong, verdict.pixels.wrong), "{what}");
-    let differing: u64 = ledger.causes.values().map(|share| share.pixels + share.merely_differing).sum();
-    assert_eq!(differing, verdict.pixels.differing, "{what}");
-    for &pixel in &evaluation.replay.pixels {
-        let entries = entries_of_pixel(&evaluation.replay, pixel).expect("replayed");
-        let error = verdict.signed_error[pixel as usize].expect("compared");
-        let residue = entries.iter().map(|entry| entry.contribution).sum::<f64>() - error;
-        assert!(residue.abs() <= RESIDUE_ABOVE, "{what}: pixel {pixel} leaves {residue}");
     }
 }
 

@@ -10,7 +10,7 @@ use glam::Vec3;
 use gnomon::cause::Cause;
 use gnomon::evaluate::{Evaluation, View, jittered};
 use gnomon::mask::{Mask, Truth, Visibility};
-use gnomon::receiver::{PixelClass, Receiver};
+use gnomon::receiver::Asked;
 use gnomon::scene::{LoadOptions, Scene, load};
 use gnomon::technique::map::Settings;
 use gnomon::technique::{Job, Spec};
@@ -263,9 +263,7 @@ fn the_map_does_not_depend_on_the_camera() {
     let frustum = |view: &View<'_>, fit: &str| {
         let question = ask(view, "sun");
         let settings = Settings::of(&spec.with("fit", fit).unwrap());
-        let asked = |(receiver, class): (&Option<_>, &PixelClass)| receiver.filter(|_| *class == PixelClass::Asked);
-        let visible: Vec<_> = view.receivers.pixels.iter().zip(&question.classes).filter_map(asked).collect();
-        let visible: Vec<_> = visible.iter().map(|receiver: &Receiver| receiver.point_in_world).collect();
+        let visible = Asked { receivers: &view.receivers, classes: &question.classes }.points();
         settings.projection.fit(view.scene, question.light, &settings, &visible).unwrap()[0].rows
     };
     assert_eq!(frustum(&view, "scene"), frustum(&other, "scene"));

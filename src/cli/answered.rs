@@ -40,7 +40,7 @@ impl<'t, 'v> Answered<'t, 'v> {
         let answer = || -> Result<Answer<'v>, EvaluateError> {
             let evaluation = evaluate(view, question, &task.spec, Effort::CAUSES, watch)?;
             let phases = jittered(view, question, &task.spec, args.jitter, watch)?;
-            let moved = flips(view.gpu, view.scene, task.light, &task.spec, args.motion, watch)?;
+            let moved = flips(view, question, &task.spec, args.motion, watch)?;
             Ok(Answer { evaluation, phases: phases.into_iter().map(|(_, wrong)| wrong).collect(), moved })
         };
         let outcome = answer().map_or_else(
@@ -79,7 +79,7 @@ impl<'t, 'v> Answered<'t, 'v> {
         run.cost = Some(evaluation.cost.clone());
         run.truth = Some(report::truth_source(question));
         run.jitter = Jitter::of(phases);
-        run.motion = Motion::of(&moved.of_camera, &moved.of_light);
+        run.motion = Motion::of(moved);
         run.seams = evaluation.seams(run.wrong_above);
         run.bias = Some(evaluation.prepared.bias()).filter(|views| !views.is_empty());
         run.budget = self.task.limits.outcome(&evaluation.verdict, run.jitter);

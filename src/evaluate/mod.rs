@@ -17,7 +17,7 @@ mod view;
 
 pub use diagnose::{BiasVerdict, Diagnosis, Outcome, Trials, diagnose, search_bias};
 pub use jitter::jittered;
-pub use motion::{Flips, STEP_PX, flips};
+pub use motion::{Flips, Followed, STEP_PX, flips};
 pub use occluders::occluders;
 pub use profile::{Penumbra, Sample, penumbras, predicted_at, profile};
 pub use timing::{TIMED_ROUNDS, Times, time_evaluations, time_in_turn};

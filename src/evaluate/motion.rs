@@ -1,26 +1,58 @@
 //! Shimmering: what changes from frame to frame although the truth does not. The camera, then the light, moves on by small
-//! steps; at each step the answers of two frames are compared where both asked, and so are the exact answers.
+//! steps; at each step the answers of two frames are compared, and so are the exact answers.
+//!
+//! While the camera moves, points of the world are followed: those that the first picture shows are asked in every frame, of
+//! a technique that is fitted to the moved camera. So what flips is the technique's own, not the picture's, and the truth
+//! stays as it is. Only techniques that draw the camera's picture have no answer for such points; they are compared pixel
+//! by pixel, less what changes in the truth.
 
-use super::{Effort, EvaluateError, View, evaluate};
+use super::{Effort, EvaluateError, Question, View, evaluate};
+use crate::cast::Occlusion;
 use crate::gpu::Gpu;
 use crate::mask::{Mask, Truth, TruthMask};
-use crate::scene::{Light, LightKind, Scene};
-use crate::technique::Spec;
+use crate::receiver::{Asked, Receiver};
+use crate::scene::{LightKind, Scene, Segment};
+use crate::technique::{Job, Spec, TechniqueError};
 use crate::verdict::wrong_above;
-use crate::watch::Watch;
-use glam::{DQuat, DVec3, Vec3};
+use crate::watch::{Interrupted, Watch};
+use glam::{DQuat, DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// How far the picture moves with each step of the camera, pixels at the distance of what it looks at. A step of the
 /// light turns it about the scene as far as that.
 pub const STEP_PX: f64 = 0.25;
 
-/// Pixels that flip at each step although the truth does not, or the truth does and they do not.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// What is compared from frame to frame while the camera moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Followed {
+    /// The points that the first picture shows.
+    Points,
+    /// The same pixels, whatever they show.
+    Pixels,
+}
+
+impl Followed {
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Pixels => "pixels",
+        }
+    }
+}
+
+/// What flips at each step although the truth does not, or the truth does and it does not.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Flips {
-    /// While the camera moves sideways.
+    /// Pixels, or points of them, while the camera moves sideways.
     pub of_camera: Vec<u64>,
-    /// While the light turns about the middle of the scene.
+    /// Pixels while the light turns about the middle of the scene.
     pub of_light: Vec<u64>,
+    /// What was compared while the camera moved.
+    pub followed: Followed,
 }
 
 /// One frame: the exact answer and the technique's.
@@ -29,42 +61,94 @@ struct Frame {
     mask: Mask,
 }
 
-/// Moves camera and light by `steps` each and counts the flips of every step.
+/// Moves camera and light by `steps` each, from where `view` and `question` have them, and counts the flips of every step.
 ///
 /// # Errors
 /// Those of [`evaluate`].
 pub fn flips(
-    gpu: &Gpu,
-    scene: &Scene,
-    light: &Light,
+    view: &View<'_>,
+    question: &Question<'_>,
     spec: &Spec,
     steps: u32,
     watch: &dyn Watch,
 ) -> Result<Flips, EvaluateError> {
-    if steps == 0 {
-        return Ok(Flips::default());
-    }
-    let along = |moved: fn(&Scene, &str, f64) -> Scene| -> Result<Vec<u64>, EvaluateError> {
-        let threshold = wrong_above(light);
-        let mut before = frame(gpu, scene, &light.name, spec, watch)?;
-        let mut counts = Vec::new();
-        for step in 1..=steps {
-            let after = frame(gpu, &moved(scene, &light.name, f64::from(step)), &light.name, spec, watch)?;
-            counts.push(flipped(&before, &after, threshold));
-            before = after;
-        }
-        Ok(counts)
-    };
-    Ok(Flips { of_camera: along(with_camera_moved)?, of_light: along(with_light_turned)? })
+    let followed = if spec.technique().draws_the_picture(spec) { Followed::Pixels } else { Followed::Points };
+    let light = question.light.name.as_str();
+    let frame_of = |scene: &Scene| frame(view.gpu, scene, light, spec, watch);
+    let moved_camera = |step: f64| with_camera_moved(view.scene, step);
+    let of_camera = along(question, steps, |step| match followed {
+        Followed::Points => followed_frame(view, &moved_camera(step), question, spec, watch),
+        Followed::Pixels => frame_of(&moved_camera(step)),
+    })?;
+    let of_light = along(question, steps, |step| frame_of(&with_light_turned(view.scene, light, step)))?;
+    Ok(Flips { of_camera, of_light, followed })
 }
 
+/// The flips from each frame to the next, for the steps 0 to `steps`.
+fn along(
+    question: &Question<'_>,
+    steps: u32,
+    frame: impl Fn(f64) -> Result<Frame, EvaluateError>,
+) -> Result<Vec<u64>, EvaluateError> {
+    let mut counts = Vec::new();
+    if steps == 0 {
+        return Ok(counts);
+    }
+    let mut before: Option<Frame> = None;
+    for step in 0..=steps {
+        let after = frame(step.into())?;
+        counts.extend(before.map(|before| flipped(&before, &after, wrong_above(question.light))));
+        before = Some(after);
+    }
+    Ok(counts)
+}
+
+/// What a scene's own picture says.
 fn frame(gpu: &Gpu, scene: &Scene, light: &str, spec: &Spec, watch: &dyn Watch) -> Result<Frame, EvaluateError> {
-    let view = View::new(gpu, scene).map_err(crate::technique::TechniqueError::from)?;
+    let view = View::new(gpu, scene).map_err(TechniqueError::from)?;
     // A moved scene has the same lights by the same names.
     let light = scene.light(light).unwrap_or(&scene.lights[0]);
     let question = view.ask(light, watch)?;
     let mask = evaluate(&view, &question, spec, Effort::VERDICT, watch)?.mask;
     Ok(Frame { truth: question.truth.mask, mask })
+}
+
+/// What a technique that is fitted to the picture of a moved camera says of the points in the first picture, where the
+/// moved camera still sees them.
+fn followed_frame(
+    first: &View<'_>,
+    moved: &Scene,
+    question: &Question<'_>,
+    spec: &Spec,
+    watch: &dyn Watch,
+) -> Result<Frame, EvaluateError> {
+    let view = View::new(first.gpu, moved).map_err(TechniqueError::from)?;
+    let classes = view.receivers.classify(moved, question.light);
+    let fitted_to = Asked { receivers: &view.receivers, classes: &classes };
+    let followed = Job { fitted_to, ..first.job(question.light, &question.classes) };
+    let job = Job { scene: moved, ..followed };
+    let mut mask = spec.technique().prepare(spec, job)?.run()?.mask;
+    let still_seen = |receiver: &Option<Receiver>| receiver.is_some_and(|receiver| is_seen(&view, &receiver));
+    let seen: Vec<bool> = first.receivers.pixels.par_iter().map(still_seen).collect();
+    for (answer, _) in mask.pixels.iter_mut().zip(seen).filter(|(_, is_seen)| !is_seen) {
+        *answer = None;
+    }
+    if watch.interrupted() {
+        return Err(Interrupted.into());
+    }
+    Ok(Frame { truth: question.truth.mask.clone(), mask })
+}
+
+/// Whether a view shows a point: not beyond its outermost pixel centres, and not behind a caster.
+fn is_seen(view: &View<'_>, receiver: &Receiver) -> bool {
+    let (camera, size) = (&view.scene.camera, view.scene.image_size);
+    let clip = camera.clip_from_world(size) * receiver.point_in_world.extend(1.0);
+    let from_corner = DVec2::new(clip.x + clip.w, clip.w - clip.y) * 0.5 * size.as_dvec2() / clip.w;
+    let is_inside = clip.w >= camera.near_m
+        && from_corner.min_element() >= 0.5
+        && (size.as_dvec2() - from_corner).min_element() >= 0.5;
+    let sight = Segment { from: receiver.point_in_world, to: camera.eye.as_dvec3() };
+    is_inside && view.casters.occlusion(&sight, Some(receiver.triangle), 0.0) == Occlusion::Clear
 }
 
 /// How many pixels change otherwise than the truth does, by more than `threshold`.
@@ -88,7 +172,7 @@ fn step_m(scene: &Scene) -> f64 {
     STEP_PX * 2.0 * (0.5 * camera.fov_y_rad).tan() * distance / f64::from(scene.image_size.y)
 }
 
-fn with_camera_moved(scene: &Scene, _light: &str, steps: f64) -> Scene {
+fn with_camera_moved(scene: &Scene, steps: f64) -> Scene {
     let mut moved = scene.clone();
     let camera = &mut moved.camera;
     let side = (camera.target - camera.eye).as_dvec3().cross(camera.up.as_dvec3()).normalize_or_zero();

@@ -4,7 +4,7 @@ use crate::cast::Casters;
 use crate::gpu::{GBufferPass, Geometry, Gpu, GpuError};
 use crate::inspect::{Adjacency, neighbours};
 use crate::mask::Truth;
-use crate::receiver::{PixelClass, Receivers};
+use crate::receiver::{Asked, PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::technique::Job;
 use crate::truth::mitsuba::MitsubaCheck;
@@ -175,6 +175,7 @@ impl<'s> View<'s> {
             light,
             receivers: &self.receivers,
             classes,
+            fitted_to: Asked { receivers: &self.receivers, classes },
         }
     }
 }

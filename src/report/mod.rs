@@ -5,6 +5,7 @@
 //! lights and meshes come from files of strangers and are escaped by every writer.
 
 pub mod compare;
+mod details;
 pub mod export;
 mod format;
 pub mod html;

@@ -4,11 +4,10 @@
 //! what the figures leave. Every block has the same column widths.
 
 use super::Report;
-use super::format::{NOTHING, grouped, percent, printable, wrapped};
+use super::details::{Detail, details};
+use super::format::{grouped, printable, wrapped};
 use super::model::Run;
 use super::summary::{BUDGET_NOTE, Summary, software_note};
-use crate::technique::EffectiveBias;
-use crate::verdict::{BinError, ViewError};
 use comfy_table::{
     Cell, CellAlignment, ColumnConstraint, ContentArrangement, ContentLineStyle, LineStyle, Table, Width,
 };
@@ -18,6 +17,9 @@ const NARROWEST: u16 = 12;
 
 /// Space between two columns.
 const GAP: u16 = 2;
+
+/// How far details stand in below the name of their run.
+const INDENT: usize = 2;
 
 const HEADS: [&str; 6] = [
     "technique",
@@ -42,9 +44,7 @@ pub fn table(report: &Report, width: u16) -> String {
     for runs in report.runs.chunk_by(|a, b| (&a.scene, &a.light, a.image) == (&b.scene, &b.light, b.image)) {
         let end = start + runs.len();
         text.push_str(&block(runs, &rows[start..end], widths));
-        for line in runs.iter().flat_map(details) {
-            wrapped(&line, width.into()).iter().for_each(|line| text.push_str(&format!("{}\n", line.trim_end())));
-        }
+        runs.iter().for_each(|run| text.push_str(&detailed(run, width.into())));
         text.push('\n');
         start = end;
     }
@@ -71,70 +71,19 @@ fn block(runs: &[Run], rows: &[[String; 6]], widths: [u16; 6]) -> String {
     text
 }
 
-/// What else is known of a run, a line each: its errors near seams, over texel phases and in motion, and its bias.
-pub(super) fn details(run: &Run) -> Vec<String> {
-    [seams(run), jitter(run), motion(run)].into_iter().flatten().chain(biases(run)).collect()
-}
-
-/// Texels around seams that a table tells apart from the rest.
-const NEAR_SEAM_TEXELS: f64 = 2.0;
-
-/// Whether a run with wrong pixels is worse in one of its views, and near seams.
-fn seams(run: &Run) -> Option<String> {
-    let seams = run.seams.as_ref().filter(|_| run.pixels.is_some_and(|pixels| pixels.wrong > 0))?;
-    let fraction = |view: &&ViewError| view.error.wrong_fraction().unwrap_or(0.0);
-    let worst = seams.views.iter().max_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
-    let [near, far] = seams.split_at(NEAR_SEAM_TEXELS);
-    let share = |bin: BinError| bin.wrong_fraction().map_or_else(|| NOTHING.to_owned(), percent);
-    Some(format!(
-        "{}  in the worst of {} views, {}: {} of {} px wrong; within {NEAR_SEAM_TEXELS} texels of a seam {}, beyond {}",
-        printable(&run.typed),
-        seams.views.len(),
-        printable(&worst.name),
-        share(worst.error),
-        grouped(worst.error.asked),
-        share(near),
-        share(far)
-    ))
-}
-
-/// What shifting the texel grid of a run does to its share of wrong pixels.
-fn jitter(run: &Run) -> Option<String> {
-    let jitter = run.jitter?;
-    let [mean, min, max] =
-        [jitter.wrong_fraction.mean, jitter.wrong_fraction.min, jitter.wrong_fraction.max].map(percent);
-    let (typed, phases) = (printable(&run.typed), jitter.phases);
-    Some(format!("{typed}  over {phases} texel phases: {mean} wrong on average, {min} to {max}"))
-}
-
-/// How many pixels of a run flip from frame to frame although the truth does not.
-fn motion(run: &Run) -> Option<String> {
-    let motion = run.motion?;
-    let (typed, steps) = (printable(&run.typed), motion.steps);
-    let [camera, light] =
-        [motion.camera_flips, motion.light_flips].map(|flips| format!("{:.1} (at most {})", flips.mean, flips.max));
-    Some(format!("{typed}  over {steps} steps: {camera} px flip at a step of the camera, {light} at one of the light"))
-}
-
-/// Of more views than these only the least and the most biased are shown.
-const LISTED_VIEWS: usize = 8;
-
-/// How far comparisons were really moved, one line for each view.
-fn biases(run: &Run) -> Vec<String> {
-    let typed = printable(&run.typed);
-    let views = run.bias.as_deref().unwrap_or_default();
-    let mut shown: Vec<&EffectiveBias> = views.iter().collect();
-    if shown.len() > LISTED_VIEWS {
-        shown.sort_by(|a, b| a.along_light.m.median.total_cmp(&b.along_light.m.median));
-        shown = vec![shown[0], shown[shown.len() - 1]];
-    }
-    let of = |view: &str| if views.len() > 1 { format!(" in {}", printable(view)) } else { String::new() };
-    let mut lines: Vec<String> =
-        shown.iter().map(|bias| format!("{typed}  bias{}: {}", of(&bias.view), bias.told())).collect();
-    if shown.len() < views.len() {
-        lines.push(format!("{typed}  bias in {} views between: in report.json", views.len() - shown.len()));
-    }
-    lines
+/// What else is known of a run, below its name, indented and labelled.
+fn detailed(run: &Run, width: usize) -> String {
+    let details = details(run);
+    let label_width = details.iter().map(|detail| detail.label.len()).max().unwrap_or(0);
+    let indent = INDENT + label_width + usize::from(GAP);
+    let lines = |detail: Detail| -> String {
+        let labels = std::iter::once(detail.label).chain(std::iter::repeat(""));
+        let lines = wrapped(&detail.text, width.saturating_sub(indent));
+        let line = |(label, line): (&str, &String)| format!("{:indent$}{line}\n", format!("{:INDENT$}{label}", ""));
+        labels.zip(&lines).map(line).collect()
+    };
+    let name = if details.is_empty() { Vec::new() } else { wrapped(&printable(&run.typed), width) };
+    name.iter().map(|line| format!("{line}\n")).chain(details.into_iter().map(lines)).collect()
 }
 
 fn heading(runs: &[Run]) -> String {
@@ -224,8 +173,9 @@ mod tests {
             "acne 67 %",
             "1.25*",
             "EXCEEDED",
-            "over 2 texel phases: 37.5 % wrong",
-            "map:size=512  bias: 4.00e-2 m = 1.00 texels along the light",
+            "\nmap:size=512\n  seams   in the worst of 2 views, near: ",
+            "\n  jitter  2 texel phases: 37.5 % wrong",
+            "\n  bias    4.00e-2 m = 1.00 texels along the light",
         ] {
             assert!(text.contains(shown), "{shown} in\n{text}");
         }

@@ -39,7 +39,7 @@ use crate::gpu::shader::Wgsl;
 use crate::gpu::{Geometry, Gpu, GpuError, PassRecord};
 use crate::inspect::Adjacency;
 use crate::mask::Mask;
-use crate::receiver::{PixelClass, Receivers};
+use crate::receiver::{Asked, PixelClass, Receivers};
 use crate::scene::{Light, Scene};
 use crate::watch::Interrupted;
 use footprint::Footprint;
@@ -103,6 +103,10 @@ pub trait Technique: Sync {
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported>;
     /// Specifications that would lessen errors of this cause, the most promising first: one knob changed in each.
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec>;
+    /// Whether it finds its answers by drawing the camera's picture, and so has none for points that this does not show.
+    fn draws_the_picture(&self, _spec: &Spec) -> bool {
+        false
+    }
     /// The cause that owns what is lost by taking an area light for its centre, where replays of this specification start;
     /// `None` if they start from the light's own exact answer.
     fn blamed_for_centre(&self, _spec: &Spec) -> Option<Cause> {
@@ -134,6 +138,9 @@ pub struct Job<'j> {
     pub receivers: &'j Receivers,
     /// Which pixels are asked.
     pub classes: &'j [PixelClass],
+    /// What fits follow: what is asked in the picture of the scene's camera. That is `receivers` and `classes` unless the
+    /// camera has moved on from them.
+    pub fitted_to: Asked<'j>,
 }
 
 /// A technique ready to run for one job.

@@ -181,7 +181,7 @@ fn jitter_reports_a_spread_and_does_not_follow_into_other_commands() {
     assert!(figure("max") > 0.0 && figure("stddev") >= 0.0);
     assert!(run["command"].as_str().unwrap().ends_with("--jitter 3"), "{}", run["command"]);
     assert!(!call.after("next step:").contains("jitter"), "diagnose takes no --jitter");
-    call.says(&["map:size=64  over 3 texel phases: ", " % wrong on average, "]);
+    call.says(&["\n  jitter  3 texel phases: ", " % wrong on average, "]);
 }
 
 #[test]

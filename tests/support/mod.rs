@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use testing::{Random, Shape};
 
 pub(crate) mod files;
+pub(crate) mod ledger;
 pub(crate) mod models;
 pub(crate) mod outline;
 pub(crate) mod penumbra;

@@ -124,6 +124,7 @@ fn add_context(add: &mut Add) {
     add("jitter_wrong_fraction_max", |run| text(run.jitter?.wrong_fraction.max));
     add("jitter_wrong_fraction_stddev", |run| text(run.jitter?.wrong_fraction.stddev));
     add("motion_steps", |run| text(run.motion?.steps));
+    add("motion_followed", |run| text(run.motion?.followed.name()));
     add("motion_camera_flips_mean", |run| text(run.motion?.camera_flips.mean));
     add("motion_camera_flips_max", |run| text(run.motion?.camera_flips.max));
     add("motion_light_flips_mean", |run| text(run.motion?.light_flips.mean));

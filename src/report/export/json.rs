@@ -111,7 +111,7 @@ mod tests {
         let budget = json!({"wrong_fraction": 0.001, "mean_abs": null, "met": false, "met_worst_case": false});
         assert_eq!(run["budget"], budget);
         assert_eq!(keys(&run["jitter"]["wrong_fraction"]), ["max", "mean", "min", "stddev"]);
-        assert_eq!(keys(&run["motion"]), ["camera_flips", "light_flips", "steps"]);
+        assert_eq!(keys(&run["motion"]), ["camera_flips", "followed", "light_flips", "steps"]);
         assert_eq!(run["motion"]["camera_flips"]["mean"], json!(2.0));
         assert_eq!(run["seams"]["views"][0], json!({"name": "near", "asked": 2, "wrong": 2, "mean_abs": 1.0}));
         let bin = json!({"from_texels": 2.0, "to_texels": 4.0, "asked": 5, "wrong": 1, "mean_abs": 0.2});

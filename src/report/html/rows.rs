@@ -1,9 +1,9 @@
 //! The rows of the page's tables.
 
+use crate::report::details::{self, Detail};
 use crate::report::format::{grouped, or_nothing, significant};
 use crate::report::model::{Report, Run, Status};
 use crate::report::summary::{BUDGET_NOTE, Summary, software_note};
-use crate::report::table;
 use serde::Serialize;
 
 /// A run in the summary.
@@ -134,11 +134,12 @@ pub(super) fn cost_rows(report: &Report) -> Vec<CostRow> {
     report.runs.iter().filter_map(row).collect()
 }
 
-/// What the table of a terminal tells below its runs.
+/// What is known of the runs besides their rows.
 pub(super) fn details(report: &Report) -> Vec<String> {
     let lines = |run: &Run| {
-        let of = format!("{} / {}", run.scene, run.light);
-        table::details(run).into_iter().map(move |line| format!("{of}: {line}"))
+        let of = format!("{} / {}: {}", run.scene, run.light, run.typed);
+        let line = move |detail: Detail| format!("{of}  {}: {}", detail.label, detail.text);
+        details::details(run).into_iter().map(line)
     };
     report.runs.iter().flat_map(lines).collect()
 }

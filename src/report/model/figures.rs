@@ -1,5 +1,6 @@
-//! The figures of a run that no other module owns: causes, truth, budget and jitter.
+//! The figures of a run that no other module owns: causes, truth, budget, jitter and motion.
 
+use crate::evaluate::{Flips, Followed};
 use crate::verdict::{CauseShare, Verdict};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -182,6 +183,8 @@ impl Spread {
 pub struct Motion {
     /// How many steps were taken of each kind.
     pub steps: u32,
+    /// What was compared from frame to frame while the camera moved.
+    pub followed: Followed,
     /// Flips per step while the camera moves sideways.
     pub camera_flips: Spread,
     /// Flips per step while the light turns about the scene.
@@ -191,9 +194,14 @@ pub struct Motion {
 impl Motion {
     /// The flips of each step; `None` without steps.
     #[must_use]
-    pub fn of(camera: &[u64], light: &[u64]) -> Option<Self> {
+    pub fn of(flips: &Flips) -> Option<Self> {
         let spread = |counts: &[u64]| Spread::of(&counts.iter().map(|count| *count as f64).collect::<Vec<f64>>());
-        Some(Self { steps: camera.len() as u32, camera_flips: spread(camera)?, light_flips: spread(light)? })
+        Some(Self {
+            steps: flips.of_camera.len() as u32,
+            followed: flips.followed,
+            camera_flips: spread(&flips.of_camera)?,
+            light_flips: spread(&flips.of_light)?,
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::cause::Cause;
+use crate::evaluate::{Flips, Followed};
 use crate::mask::{Mask, Truth, TruthMask, Visibility};
 use crate::receiver::PixelClass;
 use crate::technique::{BiasAt, Cost, EffectiveBias, GpuTime, InView, PassTime};
@@ -69,7 +70,7 @@ pub(crate) fn full_run(scene: &str) -> Run {
     });
     run.budget = Some(BudgetOutcome::of(&verdict, Some(0.001), None));
     run.jitter = Jitter::of(&[0.25, 0.5]);
-    run.motion = Motion::of(&[1, 3], &[0, 2]);
+    run.motion = Motion::of(&Flips { of_camera: vec![1, 3], of_light: vec![0, 2], followed: Followed::Points });
     let places = [0, 0, 1, 1, 1, 1, 1, 1].map(|view| Some(InView { view, seam_texels: Some(3.0 * view as f64) }));
     let names = ["near", "far"].map(str::to_owned);
     run.seams = Some(seams(&names, &places, &verdict.signed_error, WRONG_ABOVE_HARD));

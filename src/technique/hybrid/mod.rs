@@ -79,6 +79,9 @@ impl Technique for Hybrid {
         let changed = own.into_iter().chain(nested).filter_map(|(key, value)| spec.with(key, &value).ok());
         changed.filter(|changed| changed != spec).collect()
     }
+    fn draws_the_picture(&self, _: &Spec) -> bool {
+        true
+    }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         let map = map::Settings::of(&compared(spec));

@@ -6,10 +6,9 @@ use super::replay;
 use super::segment_test::{Decision, crossing};
 use crate::cause::Replay;
 use crate::mask::Mask;
-use crate::receiver::{PixelClass, Receiver};
+use crate::receiver::{Asked, PixelClass, Receiver};
 use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, Job, Prepared, ReceiverBuffer, TechniqueError};
-use glam::DVec3;
 use std::collections::HashMap;
 
 /// See the module.
@@ -34,9 +33,9 @@ impl<'j> PreparedIrregular<'j> {
     /// # Errors
     /// What the device reported.
     pub fn new(grid: u32, job: Job<'j>) -> Result<Self, TechniqueError> {
-        let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
-        let points: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let grids = Grids::fit(job.light, &points, grid);
+        // Its samples are the asked points themselves, wherever the camera is by now.
+        let asked = Asked { receivers: job.receivers, classes: job.classes };
+        let grids = Grids::fit(job.light, &[asked.points(), job.fitted_to.points()].concat(), grid);
         let light_sides = light_sides(&job);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = IrregularPasses::new(&job, &grids, &light_sides, &receivers)?;

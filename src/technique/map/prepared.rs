@@ -45,9 +45,7 @@ impl<'j> PreparedMap<'j> {
         job: Job<'j>,
         silhouettes: Option<&[[DVec3; 2]]>,
     ) -> Result<Self, TechniqueError> {
-        let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
-        let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
-        let fitted = settings.projection.fit(job.scene, job.light, settings, &visible)?;
+        let fitted = settings.projection.fit(job.scene, job.light, settings, &job.fitted_to.points())?;
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let scout = DeviceScout { job: &job, settings, receivers: &receivers };
         let refined = settings.projection.refine(job.scene, job.light, settings, &scout)?;

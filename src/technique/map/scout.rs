@@ -5,7 +5,7 @@ use super::lookup::Lookup;
 use super::passes::MapPasses;
 use super::projection::{Scout, View};
 use super::{bias, filter, texel_footprint};
-use crate::receiver::{PixelClass, Receiver};
+use crate::receiver::Receiver;
 use crate::technique::{Job, ReceiverBuffer, TechniqueError};
 
 /// Scouts for one job.
@@ -17,8 +17,7 @@ pub(super) struct DeviceScout<'s, 'j> {
 
 impl Scout for DeviceScout<'_, '_> {
     fn receivers(&self) -> Vec<Receiver> {
-        let asked = self.job.receivers.pixels.iter().zip(self.job.classes);
-        asked.filter(|(_, class)| **class == PixelClass::Asked).filter_map(|(pixel, _)| *pixel).collect()
+        self.job.fitted_to.iter().collect()
     }
 
     fn m(&self, view: &View, receiver: &Receiver) -> Option<f64> {

@@ -63,6 +63,9 @@ impl Technique for Planar {
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
         remedies::remedies(spec, cause)
     }
+    fn draws_the_picture(&self, _: &Spec) -> bool {
+        true
+    }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         let settings = Settings::of(spec);

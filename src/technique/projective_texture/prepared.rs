@@ -4,7 +4,7 @@ use super::passes::PicturePasses;
 use super::{Settings, replay};
 use crate::cause::Replay;
 use crate::mask::Mask;
-use crate::receiver::{PixelClass, Receiver};
+use crate::receiver::Receiver;
 use crate::technique::footprint::Footprint;
 use crate::technique::map::projection::{Site, View};
 use crate::technique::map::{Lookup, texel_footprint};
@@ -21,8 +21,7 @@ pub(super) struct PreparedPicture<'j> {
 
 impl<'j> PreparedPicture<'j> {
     pub(super) fn new(settings: &Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
-        let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
-        let visible: Vec<DVec3> = asked.filter_map(|(pixel, _)| pixel.map(|r| r.point_in_world)).collect();
+        let visible = job.fitted_to.points();
         let views = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
         let lookup = Lookup::new(views, &settings.map, job.light);
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;

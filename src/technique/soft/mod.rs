@@ -58,6 +58,10 @@ impl Technique for Soft {
     fn blamed_for_centre(&self, _spec: &Spec) -> Option<Cause> {
         None
     }
+    fn draws_the_picture(&self, spec: &Spec) -> bool {
+        let inner = spec.nested("inner");
+        inner.technique().draws_the_picture(&inner)
+    }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         Ok(Box::new(prepared::PreparedSoft::new(spec, job)?))

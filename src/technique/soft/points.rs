@@ -2,7 +2,6 @@
 
 use super::Pattern;
 use super::pattern::on_disc;
-use crate::receiver::{PixelClass, Receiver};
 use crate::scene::{Emitter, Light, LightKind};
 use crate::technique::Job;
 use glam::{DVec2, DVec3, Vec3};
@@ -63,8 +62,6 @@ fn place(light: &Light, at: DVec2, seen_from: DVec3) -> DVec3 {
 }
 
 fn middle_of_asked(job: &Job<'_>) -> DVec3 {
-    let asked = job.receivers.pixels.iter().zip(job.classes).filter(|(_, class)| **class == PixelClass::Asked);
-    let points: Vec<DVec3> =
-        asked.filter_map(|(pixel, _): (&Option<Receiver>, _)| Some((*pixel)?.point_in_world)).collect();
+    let points = job.fitted_to.points();
     points.iter().sum::<DVec3>() / points.len().max(1) as f64
 }

@@ -5,7 +5,7 @@ use super::{Pattern, points, replay};
 use crate::cause::{Cause, Replay};
 use crate::gpu::PassRecord;
 use crate::mask::{Mask, Visibility};
-use crate::receiver::PixelClass;
+use crate::receiver::{Asked, PixelClass};
 use crate::scene::{Light, LightKind};
 use crate::technique::footprint::Footprint;
 use crate::technique::{Answer, Job, Prepared, Spec, TechniqueError};
@@ -43,15 +43,23 @@ impl<'j> PreparedSoft<'j> {
         light: &Light,
         act: impl FnOnce(&dyn Prepared, &[PixelClass]) -> Result<T, TechniqueError>,
     ) -> Result<T, TechniqueError> {
-        let mut classes = self.job.receivers.classify(self.job.scene, light);
-        for (class, whole) in classes.iter_mut().zip(self.job.classes) {
+        let classes = self.for_point(light, Asked { receivers: self.job.receivers, classes: self.job.classes });
+        let fitted_to = self.for_point(light, self.job.fitted_to);
+        let fitted_to = Asked { receivers: self.job.fitted_to.receivers, classes: &fitted_to };
+        let job = Job { light, classes: &classes, fitted_to, ..self.job };
+        let prepared = self.inner.technique().prepare(&self.inner, job)?;
+        act(prepared.as_ref(), &classes)
+    }
+
+    /// The class of every pixel for one point.
+    fn for_point(&self, point: &Light, whole: Asked<'_>) -> Vec<PixelClass> {
+        let mut classes = whole.receivers.classify(self.job.scene, point);
+        for (class, whole) in classes.iter_mut().zip(whole.classes) {
             if *whole != PixelClass::Asked {
                 *class = *whole;
             }
         }
-        let job = Job { light, classes: &classes, ..self.job };
-        let prepared = self.inner.technique().prepare(&self.inner, job)?;
-        act(prepared.as_ref(), &classes)
+        classes
     }
 }
 

@@ -96,6 +96,9 @@ impl Technique for Volume {
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
         remedies::remedies(spec, cause)
     }
+    fn draws_the_picture(&self, _: &Spec) -> bool {
+        true
+    }
     fn prepare<'j>(&self, spec: &Spec, job: Job<'j>) -> Result<Box<dyn Prepared + 'j>, TechniqueError> {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         Ok(Box::new(PreparedVolume::new(Settings::of(spec), job)?))

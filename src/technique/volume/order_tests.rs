@@ -9,7 +9,7 @@ use crate::cast::testing::Random;
 use crate::gpu::{GBufferPass, Geometry, Gpu};
 use crate::inspect::fixtures::{cube, scene_of, torus};
 use crate::inspect::neighbours;
-use crate::receiver::Receivers;
+use crate::receiver::{Asked, Receivers};
 use crate::scene::{LightKind, Scene};
 use crate::technique::volume::target::Target;
 use crate::technique::{Job, Spec};
@@ -54,6 +54,7 @@ fn stencils(gpu: &Gpu, scene: &Scene, typed: &str) -> Vec<Vec<u8>> {
         light,
         receivers: &receivers,
         classes: &classes,
+        fitted_to: Asked { receivers: &receivers, classes: &classes },
     };
     let settings = Settings::of(&Spec::parse(typed).unwrap());
     let eye = Eye::new(scene, &settings).unwrap();
