@@ -6,7 +6,7 @@ use super::filter::Kernel;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
-use crate::scene::{Bounds, Light, Scene, Segment};
+use crate::scene::{Bounds, Light, Segment};
 use crate::technique::InView;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
@@ -21,8 +21,8 @@ pub struct Lookup {
     projection: &'static dyn Projection,
     seam: Seam,
     border: Border,
-    near_mode: NearMode,
-    caster_sides: CasterSides,
+    pub(super) near_mode: NearMode,
+    pub(super) caster_sides: CasterSides,
     pub(super) format: DepthFormat,
     pub(super) light: DVec4,
     /// Whether each tap is biased for as far as it is, not for the widest kernel.
@@ -178,33 +178,6 @@ impl Lookup {
             return Err(if is_near { Outside::Near } else { Outside::Far });
         }
         Ok(site)
-    }
-
-    /// Whether casters are drawn with that side towards the light.
-    #[must_use]
-    pub fn draws_side(&self, scene: &Scene, triangle: u32) -> bool {
-        self.draws_facing(scene.facing(triangle, self.light))
-    }
-
-    /// The same for a side by which way it faces: positive towards the light.
-    pub(super) fn draws_facing(&self, facing: f64) -> bool {
-        match self.caster_sides {
-            CasterSides::All => true,
-            CasterSides::LightFacing => facing > 0.0,
-            CasterSides::AwayFacing => facing < 0.0,
-        }
-    }
-
-    /// The depth of a caster's point in a view, not yet clamped to 0..=1; `None` if it is not drawn.
-    #[must_use]
-    pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
-        let site = self.views[view].site(point_in_world);
-        (site.at.q > 0.0 && self.draws_depth(site.at.depth)).then_some(site.at.depth)
-    }
-
-    /// Whether casters of that depth are drawn: in the range, or clamped to it.
-    pub(super) fn draws_depth(&self, depth: f64) -> bool {
-        self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&depth)
     }
 
     /// Places a receiver in a view.
