@@ -130,8 +130,10 @@ impl Projection for Cascaded {
 
 fn direction(light: &Light) -> Result<DVec3, Unsupported> {
     match light.kind {
-        LightKind::Directional { towards_light } => Ok(-towards_light.as_dvec3().normalize()),
-        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional lights" }),
+        LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+            Ok(-towards_light.as_dvec3().normalize())
+        }
+        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional and sun lights" }),
     }
 }
 
