@@ -18,7 +18,7 @@ pub enum Cause {
     Curvature,
     /// Bias removed a shadow that is there without it.
     PeterPanning,
-    /// The deciding surface lies before the near plane.
+    /// The deciding surface, or a corner of its triangle, lies before the near plane.
     ClippingNear,
     /// The deciding surface lies behind the far plane, or beyond a volume's reach.
     ClippingFar,
@@ -116,7 +116,7 @@ impl Cause {
             Self::PeterPanning => {
                 "the bias is larger than the distance to the blocker: the shadow is lost where blocker and receiver meet"
             }
-            Self::ClippingNear => "the blocker or the receiver lies before the near plane",
+            Self::ClippingNear => "the blocker, a part of it, or the receiver lies before the near plane",
             Self::ClippingFar => "the receiver lies behind the far plane",
             Self::ClippingFrustum => "the receiver lies outside the light's frustum, where everything is lit",
             Self::StencilOverflow => "more volumes overlap here than the stencil can count",

@@ -18,6 +18,7 @@ const FAULTS: &[Fault] = &[
     ("gbuffer.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world.yxz, 1.0)", "planar"),
     ("shared/receiver.wgsl", "return thread.x +", "return thread.x / 2u +", "map"),
     ("map/caster.wgsl", "vec4f(position_in_world, 1.0)", "vec4f(position_in_world, 1.01)", "map"),
+    ("map/caster_pancaked.wgsl", "min(clip.z, clip.w)", "min(clip.z, 0.5 * clip.w)", PANCAKED),
     ("map/caster_depth.wgsl", "corner.depth.x / corner.depth.y", "corner.depth.y - corner.depth.x", IN_FRAGMENTS),
     ("map/caster_rows.wgsl", "vec4f(clip.xy, ", "vec4f(clip.yx, ", IN_FRAGMENTS),
     ("map/caster_paraboloid.wgsl", "seen.xy / (RIM", "seen.yx / (RIM", PARABOLOID),
@@ -119,6 +120,7 @@ const FAULTS: &[Fault] = &[
 const MASKED: &str = "map:filter=pcf-edge-masked,depth_convention=forward";
 const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
+const PANCAKED: &str = "map:near_mode=vertex-clamp";
 const PARABOLOID: &str = "map:projection=dual-paraboloid";
 const PROJECTED: &str = "projective-texture";
 const ZP_PLUS: &str = "volume:count=zp-plus";

@@ -125,8 +125,9 @@ pub(super) fn cast(
     let mut hits = Vec::new();
     casters.all_hits(&ray, None, &mut hits);
     let surface = |hit: &Hit| {
-        let depth = lookup.drawn_depth(view, ray.from.lerp(ray.to, hit.t))?;
-        let bias = lookup.hardware_bias(view, scene.triangle_in_world(hit.triangle));
+        let corners = scene.triangle_in_world(hit.triangle);
+        let depth = lookup.rasterised_depth(view, corners, ray.from.lerp(ray.to, hit.t))?;
+        let bias = lookup.hardware_bias(view, corners);
         lookup.draws_side(scene, hit.triangle).then_some(Surface { triangle: hit.triangle, depth, bias })
     };
     hits.iter().filter_map(surface).collect()
@@ -134,10 +135,10 @@ pub(super) fn cast(
 
 /// The pieces at a place in a view that is drawn in pieces; `None` if it is not.
 pub(super) fn drawn_in_pieces(lookup: &Lookup, view: usize, position_in_texels: DVec2) -> Option<Vec<Surface>> {
-    let view = &lookup.views[view];
+    let (index, view) = (view, &lookup.views[view]);
     let mut surfaces = Vec::new();
     view.drawn.as_ref()?.at(view, position_in_texels, &mut |cover| {
-        if lookup.draws_depth(cover.depth) && lookup.draws_facing(if cover.faces_light { 1.0 } else { -1.0 }) {
+        if lookup.draws_depth(index, cover.depth) && lookup.draws_facing(if cover.faces_light { 1.0 } else { -1.0 }) {
             let bias = lookup.rasteriser_bias(view, cover.largest_depth.clamp(0.0, 1.0), cover.slope_per_texel);
             surfaces.push(Surface { triangle: cover.caster, depth: cover.depth, bias });
         }

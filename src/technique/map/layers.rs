@@ -16,6 +16,7 @@ use wgpu::{
 };
 
 const CASTER: Wgsl = wgsl!("map/caster.wgsl");
+const CASTER_PANCAKED: Wgsl = wgsl!("map/caster_pancaked.wgsl");
 const CASTER_DEPTH: Wgsl = wgsl!("map/caster_depth.wgsl");
 const CASTER_ROWS: Wgsl = wgsl!("map/caster_rows.wgsl");
 const CASTER_PARABOLOID: Wgsl = wgsl!("map/caster_paraboloid.wgsl");
@@ -27,6 +28,7 @@ pub(super) fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     let named = |name: &str, files: &[Wgsl]| (name.to_owned(), files.to_vec());
     vec![
         named("map caster", &[CASTER]),
+        named("map caster pancaked", &[CASTER_PANCAKED]),
         named("map caster depth", &[CASTER_DEPTH, CASTER_ROWS, NEAREST_LAYER]),
         named("map caster paraboloid", &[CASTER_DEPTH, CASTER_PARABOLOID, NEAREST_LAYER]),
         named("map second layer", &[CASTER_DEPTH, CASTER_ROWS, SECOND_LAYER]),
@@ -34,7 +36,8 @@ pub(super) fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     ]
 }
 
-/// `Caster` of `shaders/map/caster_depth.wgsl`, which begins as that of `shaders/map/caster.wgsl`.
+/// `Caster` of `shaders/map/caster_depth.wgsl`, which begins as those of `shaders/map/caster.wgsl` and
+/// `shaders/map/caster_pancaked.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 struct CasterUniform {
@@ -161,7 +164,7 @@ fn caster_uniform(settings: &Settings, lookup: &Lookup, view: &View) -> CasterUn
         bias_slope: lookup.bias.slope as f32,
         bias_clamp: lookup.bias.clamp as f32,
         depth_sign: view.depth_sign as f32,
-        clamps: u32::from(settings.near_mode != NearMode::Extend),
+        clamps: u32::from(matches!(settings.near_mode, NearMode::DepthClamp | NearMode::FragmentClamp)),
         padding: [0; 2],
         u_row: view.rows.u.to_array(),
         v_row: view.rows.v.to_array(),
@@ -184,7 +187,7 @@ impl Raster {
     fn of(settings: &Settings, lookup: &Lookup, view: &View) -> Self {
         let on_disc = view.drawn.is_some();
         let has_own_depth = match settings.near_mode {
-            NearMode::Extend => false,
+            NearMode::Extend | NearMode::VertexClamp => false,
             NearMode::DepthClamp => on_disc,
             NearMode::FragmentClamp => true,
         };
@@ -206,10 +209,11 @@ impl Raster {
     ) -> RenderPipeline {
         let placed = if self.on_disc { CASTER_PARABOLOID } else { CASTER_ROWS };
         let own_depth = [CASTER_DEPTH, placed, if is_second { SECOND_LAYER } else { NEAREST_LAYER }];
+        let by_rasteriser = [if settings.near_mode == NearMode::VertexClamp { CASTER_PANCAKED } else { CASTER }];
         let bias = |amount: f64| if self.writes_depth { 0.0 } else { amount * self.depth_sign };
         gpu.render_pipeline(&Drawing {
             label: "map caster",
-            files: if self.writes_depth || self.on_disc { &own_depth } else { &[CASTER] },
+            files: if self.writes_depth || self.on_disc { &own_depth } else { &by_rasteriser },
             vertices: &[Some(CORNER_LAYOUT)],
             primitive: PrimitiveState {
                 front_face: if self.winding > 0.0 { FrontFace::Ccw } else { FrontFace::Cw },

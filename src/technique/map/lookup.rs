@@ -3,11 +3,10 @@
 
 use super::bias::{Amounts, Clearance};
 use super::filter::Kernel;
-use super::offset::raster_slack_texels;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
-use crate::scene::{Bounds, Light, Scene, Segment};
+use crate::scene::{Bounds, Light, Segment};
 use crate::technique::InView;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
@@ -22,12 +21,14 @@ pub struct Lookup {
     projection: &'static dyn Projection,
     seam: Seam,
     border: Border,
-    near_mode: NearMode,
-    caster_sides: CasterSides,
+    pub(super) near_mode: NearMode,
+    pub(super) caster_sides: CasterSides,
     pub(super) format: DepthFormat,
     pub(super) light: DVec4,
     /// Whether each tap is biased for as far as it is, not for the widest kernel.
     reaches_by_tap: bool,
+    /// The grid that vertices of casters are snapped to.
+    pub(super) vertex_step_texels: f64,
 }
 
 impl std::fmt::Debug for Lookup {
@@ -35,6 +36,9 @@ impl std::fmt::Debug for Lookup {
         f.debug_struct("Lookup").field("projection", &self.projection.name()).field("views", &self.views).finish()
     }
 }
+
+/// What most devices have.
+const USUAL_VERTEX_STEP: f64 = 1.0 / 256.0;
 
 /// Why a receiver has no place in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +113,14 @@ impl Lookup {
             format: settings.format,
             light: light.homogeneous(),
             reaches_by_tap: settings.filter.reaches_by_tap(),
+            vertex_step_texels: USUAL_VERTEX_STEP,
         }
+    }
+
+    /// The same for maps that a device draws which snaps vertices to a grid of that many texels.
+    #[must_use]
+    pub fn drawn_with_step(self, vertex_step_texels: f64) -> Self {
+        Self { vertex_step_texels, ..self }
     }
 
     /// The same lookup with no bias at all.
@@ -167,33 +178,6 @@ impl Lookup {
             return Err(if is_near { Outside::Near } else { Outside::Far });
         }
         Ok(site)
-    }
-
-    /// Whether casters are drawn with that side towards the light.
-    #[must_use]
-    pub fn draws_side(&self, scene: &Scene, triangle: u32) -> bool {
-        self.draws_facing(scene.facing(triangle, self.light))
-    }
-
-    /// The same for a side by which way it faces: positive towards the light.
-    pub(super) fn draws_facing(&self, facing: f64) -> bool {
-        match self.caster_sides {
-            CasterSides::All => true,
-            CasterSides::LightFacing => facing > 0.0,
-            CasterSides::AwayFacing => facing < 0.0,
-        }
-    }
-
-    /// The depth of a caster's point in a view, not yet clamped to 0..=1; `None` if it is not drawn.
-    #[must_use]
-    pub fn drawn_depth(&self, view: usize, point_in_world: DVec3) -> Option<f64> {
-        let site = self.views[view].site(point_in_world);
-        (site.at.q > 0.0 && self.draws_depth(site.at.depth)).then_some(site.at.depth)
-    }
-
-    /// Whether casters of that depth are drawn: in the range, or clamped to it.
-    pub(super) fn draws_depth(&self, depth: f64) -> bool {
-        self.near_mode != NearMode::Extend || (0.0..=1.0).contains(&depth)
     }
 
     /// Places a receiver in a view.
@@ -322,7 +306,7 @@ impl Lookup {
             border: self.border as u32,
             clearance: self.bias.clearance as u32,
             bias_kernel: self.bias.kernel as f32,
-            raster_slack_texels: raster_slack_texels(self.texels().max_element()) as f32,
+            raster_slack_texels: self.raster_slack_texels() as f32,
             cap_texels: self.bias.cap_texels as f32,
             normal_texels: self.bias.normal_texels as f32,
             depth_m: self.bias.depth_m as f32,

@@ -8,7 +8,9 @@
 //! Three orthogonal axes, each a registry: [`projection`] × [`filter`] × [`bias`].
 
 pub mod bias;
+mod combinations;
 mod depth_format;
+mod drawing;
 mod exact_texels;
 pub mod filter;
 mod layers;
@@ -83,7 +85,7 @@ impl Technique for Map {
             let what = "unclipped depth; near_mode=fragment-clamp needs none".to_owned();
             return Err(Unsupported::MissingFeature { what });
         }
-        fits_together(&settings)?;
+        combinations::fits_together(&settings, light)?;
         settings.projection.supports(scene, light, &settings)
     }
     fn remedies(&self, spec: &Spec, cause: Cause) -> Vec<Spec> {
@@ -97,46 +99,6 @@ impl Technique for Map {
         self.supports(spec, job.scene, job.light, job.gpu)?;
         Ok(Box::new(PreparedMap::new(&Settings::of(spec), job, None)?))
     }
-}
-
-/// Whether the filter, the projection and the measure of depth do.
-fn fits_together(settings: &Settings) -> Result<(), Unsupported> {
-    let (filter, projection) = (settings.filter.choice().name, settings.projection.name());
-    let refused = |why: String| Err(Unsupported::Combination { why });
-    let is_linear = settings.depth_metric == DepthMetric::Linear;
-    if settings.filter.needs_linear_depth() && !is_linear {
-        return refused(format!("filter={filter} reckons with distances: it needs depth_metric=linear, or auto"));
-    }
-    if is_linear && !settings.projection.has_linear_depth() {
-        return refused(format!(
-            "projection={projection} has no depth_metric=linear: its depth is not the distance along one axis"
-        ));
-    }
-    if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
-        return refused(format!(
-            "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
-        ));
-    }
-    let compares_texels = settings.filter.moments().is_none() && !settings.filter.samples();
-    if !compares_texels && settings.bias_amounts().clearance == bias::Clearance::ReceiverPlane {
-        return refused(format!(
-            "bias=receiver-plane compares texel by texel, which filter={filter} does not: it needs another bias"
-        ));
-    }
-    if settings.filter.softens() && !settings.projection.is_frustum() {
-        return refused(format!(
-            "filter={filter} takes the light's extent into account in a plain frustum only, not in projection={projection}"
-        ));
-    }
-    if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {
-        return refused("bias=midpoint lies between two sides of casters: it needs caster_sides=all".to_owned());
-    }
-    if settings.stores_midpoint() && settings.filter.needs_linear_depth() {
-        return refused(format!(
-            "filter={filter} reckons with blockers' distances, which bias=midpoint does not store"
-        ));
-    }
-    Ok(())
 }
 
 /// Far beyond any scene f32 can hold with useful precision.
@@ -263,6 +225,7 @@ pub(in crate::technique) fn prepare_with_silhouettes<'j>(
 static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
     let plain = |names: &[&'static str]| Kind::Choice(names.iter().copied().map(Choice::plain).collect());
     let param = |name, unit, kind, default, help| Param { name, unit, kind, default, help };
+    let real = |min, max| Kind::Real { min, max, auto: false };
     let mut params = vec![
         param("size", "texels", Kind::Integer { min: 1, max: 16_384 }, Value::Integer(1024), "side of the map"),
         param(
@@ -285,9 +248,16 @@ static PARAMS: LazyLock<Vec<Param>> = LazyLock::new(|| {
         param(
             "near_mode",
             "",
-            plain(&["extend", "depth-clamp", "fragment-clamp"]),
+            plain(&["extend", "depth-clamp", "fragment-clamp", "vertex-clamp"]),
             Value::Choice("extend", None),
-            "casters before the near plane: fit it before them, or draw them at it, by the device or by each fragment",
+            "casters before the near plane: fit it before them, or draw them at it, by the device, by each fragment, or by their corners, which bends them",
+        ),
+        param(
+            "near_margin_m",
+            "m",
+            real(0.0, MAX_M),
+            Value::Real(0.0),
+            "near_mode=...-clamp: how far before what it is fitted to the near plane lies",
         ),
         param(
             "caster_sides",

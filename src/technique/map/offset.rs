@@ -6,12 +6,6 @@ use super::lookup::Lookup;
 use super::projection::{Site, View};
 use glam::{DVec2, DVec3};
 
-/// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
-/// to that much of its slope; interpolation adds up to four units of 2⁻²⁴ per texel from the map's corner.
-pub(super) fn raster_slack_texels(texels: u32) -> f64 {
-    1.0 / 256.0 + 4.0 * f64::from(texels) * 2.0_f64.powi(-24)
-}
-
 /// Format steps that a closed-form bias adds for the rounding of both sides of the comparison.
 const FORMAT_STEPS: f64 = 4.0;
 
@@ -24,6 +18,12 @@ impl Lookup {
 
     pub(super) fn moved_along_normal(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
         point_in_world + normal_in_world * self.normal_offset_m(view, point_in_world, normal_in_world)
+    }
+
+    /// The rasteriser snaps vertices to a grid, which shifts a plane's depths by up to a step of its slope; interpolation adds
+    /// up to four units of 2⁻²⁴ per texel from the map's corner.
+    pub(super) fn raster_slack_texels(&self) -> f64 {
+        self.vertex_step_texels + 4.0 * f64::from(self.texels().max_element()) * 2.0_f64.powi(-24)
     }
 
     /// How far a receiver is moved along its normal.
@@ -70,7 +70,7 @@ impl Lookup {
     #[must_use]
     pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
         let slope_per_texel = site.slope_per_texel(normal_in_world);
-        let reach = reach_texels + raster_slack_texels(self.texels().max_element());
+        let reach = reach_texels + self.raster_slack_texels();
         reach.dot(slope_per_texel)
             + site.slack(normal_in_world, slope_per_texel, reach_texels)
             + FORMAT_STEPS * self.format.step(site.at.depth)
@@ -78,14 +78,16 @@ impl Lookup {
 
     /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
     #[must_use]
-    pub fn hardware_bias(&self, view: usize, [a, b, c]: [DVec3; 3]) -> f64 {
+    pub fn hardware_bias(&self, view: usize, corners_in_world: [DVec3; 3]) -> f64 {
         if self.bias.constant_units == 0 && self.bias.slope == 0.0 {
             return 0.0;
         }
-        let view = &self.views[view];
+        let pancaked = self.pancaked(view, corners_in_world);
+        let (view, [a, b, c]) = (&self.views[view], corners_in_world);
         let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
         let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
-        let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
+        let site = pancaked.map_or_else(|| view.site(a), |pancaked| pancaked.site(view, a));
+        let slope = site.slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
         self.rasteriser_bias(view, largest, slope)
     }
 

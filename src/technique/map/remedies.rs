@@ -35,6 +35,10 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::EdgeAliasing | Cause::PerspectiveAliasing | Cause::ProjectiveAliasing => {
             vec![larger(), set("fit", "receivers")]
         }
+        // Corners that are moved to the near plane bend triangles.
+        Cause::ClippingNear if spec.choice("near_mode").0 == "vertex-clamp" => {
+            vec![set("near_mode", "extend"), set("near_mode", "depth-clamp"), set("near_m", "auto")]
+        }
         Cause::ClippingNear => vec![set("near_m", "auto"), set("pull_back_m", "auto"), set("fit", "scene")],
         Cause::ClippingFar => vec![set("far_m", "auto"), set("fit", "scene")],
         Cause::ClippingFrustum => vec![set("width_m", "auto"), set("fov_deg", "auto"), set("fit", "scene")],

@@ -1,6 +1,7 @@
-//! A map replayed in f64, one approximation at a time: exact → coverage → bias → chords → sampling → filter → stored
-//! texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a large
-//! peter-panning that cancel. Chords are there only where casters are drawn in straight pieces in place of arcs.
+//! A map replayed in f64, one approximation at a time: exact → coverage → pancaking → bias → chords → sampling → filter →
+//! stored texels → the GPU's answer. Bias stands before sampling: after it, each biased pixel would book a large acne and a
+//! large peter-panning that cancel. Pancaking is there only where corners of casters are moved to the near plane, chords
+//! only where casters are drawn in straight pieces in place of arcs.
 
 use super::bias::Clearance;
 use super::exact_texels::{ExactTexel, cast, drawn_in_pieces, held};
@@ -39,7 +40,10 @@ struct Blocker {
 }
 
 /// Stage names in order.
-const STAGES: [&str; 8] = ["coverage", "bias", CHORDS, "sampling", "filter", MOMENTS, "stored texels", "gpu"];
+const STAGES: [&str; 9] =
+    ["coverage", PANCAKING, "bias", CHORDS, "sampling", "filter", MOMENTS, "stored texels", "gpu"];
+/// The stage of maps that move corners of casters to the near plane.
+const PANCAKING: &str = "pancaking";
 /// The stage of maps that are drawn in pieces.
 const CHORDS: &str = "chords";
 /// The stage of filters that average moments.
@@ -56,6 +60,7 @@ pub(super) fn replay(map: &PreparedMap<'_>, answer: &Mask, pixels: &[u32]) -> Re
     };
     let in_pieces = map.lookup.views.iter().any(|view| view.drawn.is_some());
     let is_there = |(_, name): &(usize, &str)| match *name {
+        PANCAKING => map.lookup.moves_corners(),
         CHORDS => in_pieces,
         MOMENTS => replayer.means.is_some(),
         _ => true,
@@ -105,14 +110,16 @@ impl<'r> Replayer<'r> {
             return self.beyond_the_border(outside, stretched);
         }
         let coverage = self.coverage(view, hits);
+        let pancaking = Step { value: self.by_pancakes(receiver, view, hits), cause: Cause::ClippingNear };
         let Some(placed) = placed else {
             // Moved out along its normal.
             let border = Step { value: self.map.lookup.border_visibility(), cause: Cause::ClippingFrustum };
-            return [coverage, border, border, border, border, border, Step { cause: Cause::Precision, ..border }];
+            let stored = Step { cause: Cause::Precision, ..border };
+            return [coverage, pancaking, border, border, border, border, border, stored];
         };
         let biased = self.biased(receiver, &placed);
         // Only a blocker that the bias took away asks for the reason.
-        let is_lost = biased > coverage.value;
+        let is_lost = biased > pancaking.value;
         let cause = if is_lost { self.cause_of_loss(pixel, receiver, view) } else { Cause::PeterPanning };
         let chords = Step { value: self.by_chords(&placed).unwrap_or(biased), cause: Cause::TechniqueModel };
         let looked = self.looked(pixel, receiver, placed);
@@ -120,7 +127,7 @@ impl<'r> Replayer<'r> {
         let filter = self.filter(&looked, sampling.value);
         let moments = self.moments(&looked, filter);
         let stored_texels = Step { value: self.by_stored_texels(&looked), cause: Cause::Precision };
-        [coverage, Step { value: biased, cause }, chords, sampling, filter, moments, stored_texels]
+        [coverage, pancaking, Step { value: biased, cause }, chords, sampling, filter, moments, stored_texels]
     }
 
     fn looked(&self, pixel: u32, receiver: &Receiver, placed: Placed) -> Looked<'_> {
@@ -138,7 +145,8 @@ impl<'r> Replayer<'r> {
         let exact = stretched.map_or(border, |looked| self.moments(&looked, self.filter(&looked, border)).value);
         let stored = stretched.map_or(border, |looked| self.by_stored_texels(&looked));
         let clipped = Step { value: exact, cause };
-        [clipped, clipped, clipped, clipped, clipped, clipped, Step { value: stored, cause: Cause::Precision }]
+        let stored = Step { value: stored, cause: Cause::Precision };
+        [clipped, clipped, clipped, clipped, clipped, clipped, clipped, stored]
     }
 
     /// What blocks the way from a receiver's point to the light, by the truth's definition: neither the receiver's
@@ -165,6 +173,21 @@ impl<'r> Replayer<'r> {
         Step { value: visibility(!is_blocked), cause }
     }
 
+    /// The same where triangles are bent by moving corners to the near plane: a blocker that this moves behind the
+    /// receiver, or beyond the far plane, is not there.
+    fn by_pancakes(&self, receiver: &Receiver, view: usize, hits: &[Blocker]) -> f64 {
+        let (lookup, scene) = (&self.map.lookup, self.map.job.scene);
+        let own_depth = lookup.views[view].project(receiver.point_in_world).depth;
+        let blocks = |hit: &Blocker| {
+            let corners = scene.triangle_in_world(hit.triangle);
+            lookup.drawn_depth(view, hit.point_in_world)?;
+            let depth = lookup.rasterised_depth(view, corners, hit.point_in_world)?;
+            let is_before = lookup.pancaked(view, corners).is_none() || !lookup.is_lit(view, own_depth, depth);
+            (is_before && lookup.draws_side(scene, hit.triangle)).then_some(())
+        };
+        visibility(!hits.iter().any(|hit| blocks(hit).is_some()))
+    }
+
     /// The exact ray with the bias: blockers that the comparison cannot tell from the receiver are not there.
     fn biased(&self, receiver: &Receiver, placed: &Placed) -> f64 {
         let lookup = &self.map.lookup;
@@ -175,10 +198,11 @@ impl<'r> Replayer<'r> {
             return visibility(lookup.is_lit(placed.view, placed.reference, stored));
         }
         let blocks = |hit: &Blocker| {
-            let drawn = lookup.drawn_depth(placed.view, hit.point_in_world);
+            let corners = scene.triangle_in_world(hit.triangle);
+            let drawn = lookup.rasterised_depth(placed.view, corners, hit.point_in_world);
             drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {
-                let by_rasteriser = lookup.hardware_bias(placed.view, scene.triangle_in_world(hit.triangle));
-                !lookup.is_lit(placed.view, placed.reference, depth + by_rasteriser)
+                let by_rasteriser = lookup.hardware_bias(placed.view, corners);
+                !lookup.is_lit(placed.view, placed.reference, (depth + by_rasteriser).clamp(0.0, 1.0))
             })
         };
         visibility(!self.blockers(receiver, placed.point_in_world).iter().any(blocks))

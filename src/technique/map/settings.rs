@@ -28,6 +28,8 @@ pub struct Settings {
     pub fit: Fit,
     /// What happens to casters before the near plane.
     pub near_mode: NearMode,
+    /// How far before what it is fitted to the near plane lies that casters are clamped to, metres.
+    pub near_margin_m: f64,
     /// Which sides of casters are drawn.
     pub caster_sides: CasterSides,
     /// What taps beyond the side of their view read.
@@ -47,6 +49,8 @@ pub enum NearMode {
     DepthClamp,
     /// The same, but fragments clamp their depth: for devices that cannot.
     FragmentClamp,
+    /// Corners are moved to the near plane, which is fitted to the receivers: bends triangles that reach through it.
+    VertexClamp,
 }
 
 /// What depth measures.
@@ -165,8 +169,10 @@ impl Settings {
             near_mode: match spec.choice("near_mode").0 {
                 "depth-clamp" => NearMode::DepthClamp,
                 "fragment-clamp" => NearMode::FragmentClamp,
+                "vertex-clamp" => NearMode::VertexClamp,
                 _ => NearMode::Extend,
             },
+            near_margin_m: spec.real("near_margin_m"),
             caster_sides: match spec.choice("caster_sides").0 {
                 "light-facing" => CasterSides::LightFacing,
                 "away-facing" => CasterSides::AwayFacing,
@@ -198,6 +204,7 @@ impl Settings {
             bias_numbers: bias_numbers_of(spec),
             fit: Fit::of(spec),
             near_mode: NearMode::Extend,
+            near_margin_m: 0.0,
             caster_sides: CasterSides::All,
             seam: Seam::PerTap,
             border: Border::Lit,

@@ -53,6 +53,7 @@ impl Settings {
             bias_numbers: NO_BIAS,
             fit: Fit::of(spec),
             near_mode: NearMode::Extend,
+            near_margin_m: 0.0,
             caster_sides: CasterSides::All,
             seam: Seam::PerTap,
             border: Border::Lit,

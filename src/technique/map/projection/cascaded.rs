@@ -215,6 +215,8 @@ fn around_sphere(
     let moved = (in_view / texel).floor() * texel + settings.fit.phase_texels * texel;
     let window = Window { min: around.min + moved, max: around.max + moved };
     let reach = Reach::within(scene, &light_view_from_world, Shape::Parallel, window).unwrap_or_default();
+    // All receivers of the slice lie within its sphere, and that does not depend on which there are.
+    let reach = Reach { nearest_receiver_m: travel.dot(centre) - radius_m, ..reach };
     let (near_m, far_m) = settings.fit.planes_m(reach.planes(light, Shape::Parallel, settings))?;
     let (shape, reversed, depth_metric) = (Shape::Parallel, settings.reversed, settings.depth_metric);
     Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, depth_metric, texels })

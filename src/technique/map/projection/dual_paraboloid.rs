@@ -38,6 +38,10 @@ impl Projection for DualParaboloid {
         wgsl!("map/paraboloid.wgsl")
     }
 
+    fn has_rasterised_depth(&self) -> bool {
+        false
+    }
+
     fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
         cube::position(light).map(|_| ())
     }

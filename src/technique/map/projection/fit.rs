@@ -58,7 +58,9 @@ impl Reach {
     pub(super) fn planes(self, light: &Light, shape: Shape, settings: &Settings) -> (f64, f64) {
         let nearest = match settings.near_mode {
             NearMode::Extend => self.nearest_caster_m.min(self.farthest_receiver_m),
-            NearMode::DepthClamp | NearMode::FragmentClamp => self.nearest_receiver_m,
+            NearMode::DepthClamp | NearMode::FragmentClamp | NearMode::VertexClamp => {
+                self.nearest_receiver_m - settings.near_margin_m
+            }
         };
         let farthest = self.farthest_receiver_m.min(light.range_m);
         match shape {

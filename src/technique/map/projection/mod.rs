@@ -17,6 +17,7 @@ mod homogeneous;
 mod knobs;
 mod light_space;
 mod light_space_perspective;
+mod pancaked;
 mod paraboloid;
 mod perspective;
 mod pieces;
@@ -29,6 +30,7 @@ mod view;
 pub(in crate::technique::map) use drawn::Drawn;
 pub use frustum::{LightFrustum, Shape, Window};
 pub use knobs::{Knobs, params};
+pub(in crate::technique::map) use pancaked::Pancaked;
 pub use site::Site;
 pub(in crate::technique) use view::GpuView;
 pub use view::{Gradients, InMap, Layout, Rows, View};
@@ -72,6 +74,10 @@ pub trait Projection: Sync {
     /// Whether its views can store distance along an axis from the light's position in place of projected depth.
     fn has_linear_depth(&self) -> bool {
         false
+    }
+    /// Whether its depth is what the rasteriser makes of the corners' own, so that moving these moves it.
+    fn has_rasterised_depth(&self) -> bool {
+        true
     }
     /// Whether there is always one view only.
     fn has_one_view(&self) -> bool {

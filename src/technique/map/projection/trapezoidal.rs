@@ -33,6 +33,10 @@ impl Projection for Trapezoidal {
         true
     }
 
+    fn has_rasterised_depth(&self) -> bool {
+        false
+    }
+
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         single::Single.supports(scene, light, settings)
     }
