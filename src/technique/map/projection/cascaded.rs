@@ -39,6 +39,10 @@ impl Projection for Cascaded {
         true
     }
 
+    fn is_unwarped(&self) -> bool {
+        true
+    }
+
     fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
         direction(light).map(|_| ())
     }
