@@ -77,6 +77,7 @@ const SPECS: &[&str] = &[
     "map:projection=trapezoidal,size=100,filter=pcf-box3,caster_sides=away-facing",
     "map:projection=trapezoidal,size=300,bias=slope,near_mode=depth-clamp,focus_fraction=0.7",
     "map:projection=light-space-perspective,size=100,bias=constant",
+    "map:projection=light-space-perspective,size=90,near_mode=fragment-clamp,filter=pcf-box3,caster_sides=away-facing",
     "map:projection=light-space-perspective,size=64,n_opt_scale=0.2,filter=pcf-box2,depth_convention=forward",
     "map:projection=cube,size=64,seam=clamp,filter=pcf-box8,bias=slope",
     "map:projection=cube,size=3,bias=none,depth_convention=forward,phase_u_texels=0.4,filter=pcf-box16",

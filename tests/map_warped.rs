@@ -5,14 +5,14 @@
 
 mod support;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use gnomon::cause::Cause;
 use gnomon::scene::Scene;
+use gnomon::technique::map::Settings;
 use gnomon::technique::map::projection::View;
-use gnomon::technique::map::{Lookup, Settings};
-use std::collections::BTreeMap;
 use support::scenes::{scene_of_texts, shadowed, shipped};
 use support::shot::{Shot, named, parsed};
+use support::texels::diagonals_over_predicted;
 
 const NEAR_M: f64 = 1.0;
 const FAR_M: f64 = 100.0;
@@ -119,36 +119,6 @@ fn light_along_the_view_gives_the_uniform_map() {
     assert!((along / uniform_along - 1.0).abs() < 1e-3 && (across / uniform_across - 1.0).abs() < 1e-3);
 }
 
-/// How large texels are in the picture: the longest distance between two pixels that read the same texel, for texels
-/// all of whose pixels lie on the ground.
-fn measured_diagonals(shot: &Shot<'_>, lookup: &Lookup) -> Vec<(u32, f64)> {
-    /// Longer diagonals are cut by hills and by the picture's border, shorter ones are made of too few pixels.
-    const PIXELS: std::ops::Range<usize> = 60..4000;
-    let scene = shot.view.scene;
-    let width = scene.image_size.x;
-    let mut of_texel: BTreeMap<(i32, i32), Vec<u32>> = BTreeMap::new();
-    for pixel in shot.asked() {
-        let receiver = shot.view.receivers.pixels[pixel as usize].expect("asked");
-        let Ok(site) = lookup.project(receiver.point_in_world) else { continue };
-        let texel = site.position_in_texels().floor().as_ivec2();
-        of_texel.entry((texel.x, texel.y)).or_default().push(pixel);
-    }
-    let at = |pixel: u32| DVec2::new((pixel % width).into(), (pixel / width).into());
-    let whole = of_texel.into_values().filter(|pixels| PIXELS.contains(&pixels.len()));
-    whole
-        .filter_map(|pixels| {
-            let middle = pixels.iter().map(|pixel| at(*pixel)).sum::<DVec2>() / pixels.len() as f64;
-            let longest = pixels.iter().map(|pixel| 2.0 * (at(*pixel) - middle).length()).fold(0.0, f64::max);
-            let own =
-                pixels.iter().min_by(|a, b| (at(**a) - middle).length().total_cmp(&(at(**b) - middle).length()))?;
-            let receiver = shot.view.receivers.pixels[*own as usize]?;
-            let is_ground = scene.mesh_of(receiver.triangle).name.to_lowercase().contains("ground");
-            // Between the outermost pixels' centres a diagonal loses about one pixel.
-            is_ground.then_some((*own, longest + 1.0))
-        })
-        .collect()
-}
-
 /// The measured size of texels against the predicted one, over a sweep of poses.
 #[test]
 fn texels_are_as_large_in_the_picture_as_predicted() {
@@ -164,18 +134,7 @@ fn texels_are_as_large_in_the_picture_as_predicted() {
             "map:size=64,projection=light-space-perspective",
         ] {
             let evaluation = shot.evaluate(typed);
-            let settings = Settings::of(&parsed(typed));
-            let visible: Vec<DVec3> = (shot.view.receivers.pixels.iter().zip(&shot.question.classes))
-                .filter(|(_, class)| **class == gnomon::receiver::PixelClass::Asked)
-                .filter_map(|(receiver, _)| receiver.map(|receiver| receiver.point_in_world))
-                .collect();
-            let views = settings.projection.fit(&scene, shot.question.light, &settings, &visible).expect("supported");
-            let lookup = Lookup::new(views, &settings, shot.question.light);
-            let mut ratios: Vec<f64> = measured_diagonals(&shot, &lookup)
-                .into_iter()
-                .filter_map(|(pixel, measured)| Some(measured / evaluation.prepared.footprint(pixel)?.m_diagonal))
-                .collect();
-            ratios.sort_by(f64::total_cmp);
+            let ratios = diagonals_over_predicted(&shot, &evaluation, typed);
             let median = ratios[ratios.len() / 2];
             let m = shot.asked().into_iter().filter_map(|pixel| Some(evaluation.prepared.footprint(pixel)?.m));
             let largest_m = m.fold(0.0, f64::max);

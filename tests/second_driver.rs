@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
+use gnomon::technique::map::{bias, filter, projection};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,21 +14,36 @@ const VARIABLE: &str = "GNOMON_SECOND_DRIVER";
 /// SwiftShader as Debian's chromium-common brings it.
 const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
-const SPECS: [&str; 13] = [
+/// Families and what only they have; every part of a map joins them.
+const FAMILIES: [&str; 14] = [
     "map",
-    "map:bias=none",
-    "map:size=512,bias=slope",
-    "map:size=512,filter=pcf-box3",
-    "map:size=512,filter=pcf-bilinear3",
-    "map:size=512,filter=pcf-poisson16",
-    "map:size=512,projection=cube",
+    "map:size=512,filter=pcf-box3,bias=slope",
+    "map:size=512,filter=pcf-bilinear3,depth_convention=forward",
     "volume",
     "volume:count=mixed",
+    "volume:count=z-pass,extrude=gpu",
+    "volume:extrude=degenerate-quads,range_mask=on",
     "planar",
     "projective-texture:size=512",
     "silhouette",
+    "hybrid",
     "irregular",
+    "ray-query",
+    "map:size=512,near_mode=depth-clamp",
 ];
+
+/// What is compared: each family, and a map with each projection, filter and bias.
+fn specs() -> Vec<String> {
+    let projections = projection::registry().iter().map(|part| format!("projection={}", part.name()));
+    let filters = filter::registry().iter().map(|part| format!("filter={}", part.choice().name));
+    let biases = bias::registry().iter().map(|part| format!("bias={}{SLACK}", part.name()));
+    let maps = projections.chain(filters).chain(biases).map(|part| format!("map:size=512,{part}"));
+    FAMILIES.into_iter().map(str::to_owned).chain(maps).collect()
+}
+
+/// A bias that follows the device's grid has more slack on a coarse one, more than hollows of the torus rise above their
+/// facets' planes; so both get more than that.
+const SLACK: &str = ",bias_depth_texels=0.1";
 
 /// Pixels that rasterisers may give to another triangle or to the other side of an edge in a picture of this size:
 /// vertices snap to 1/16 pixel instead of 1/256. Without a bias some more compare nearly equal depths: measured, 28.
@@ -48,7 +64,7 @@ fn runs(driver: Option<&Path>) -> Vec<Value> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gnomon"));
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/torus");
     command.arg("check").arg(scene).args(["--size", "200x150", "--out"]).arg(out.path().join("r"));
-    command.args(SPECS.iter().flat_map(|spec| ["-t", spec]));
+    command.args(specs().iter().flat_map(|spec| ["-t", spec]));
     if let Some(driver) = driver {
         command.env("VK_DRIVER_FILES", driver);
     }

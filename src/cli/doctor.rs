@@ -23,6 +23,7 @@ pub(super) fn run() -> anyhow::Result<u8> {
     say(&format!("largest map        {0} x {0} texels", limits.texture_side));
     say(&format!("largest binding    {} MiB", limits.storage_binding_bytes >> 20));
     say(&format!("largest buffer     {} MiB", limits.buffer_bytes >> 20));
+    say(&format!("vertices snap to   1/{:.0} pixel (measured)", 1.0 / gpu.vertex_step_px()));
     say("oracle exact       available (built in, f64 with exact predicates)");
     say("oracle brute       available (built in, cross-checks a sample of every truth)");
     let mitsuba =

@@ -2,6 +2,7 @@
 
 use super::GpuError;
 use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
+use super::snapping::vertex_step_px;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{
     Device, DeviceDescriptor, Error, ErrorFilter, ExperimentalFeatures, Features, Limits, MemoryHints, PollType, Queue,
@@ -14,6 +15,7 @@ pub struct Gpu {
     pub(crate) queue: Queue,
     adapter: AdapterSummary,
     lost: Arc<Mutex<Option<String>>>,
+    vertex_step_px: f64,
     /// Text of shaders that is replaced, to see whether anybody notices.
     #[cfg(test)]
     pub(crate) fault: Option<(&'static str, &'static str)>,
@@ -23,7 +25,7 @@ impl Gpu {
     /// Opens the best adapter, or the one that the environment variable `GNOMON_ADAPTER` names.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] or [`GpuError::NoDevice`].
+    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], or what the device reported.
     pub fn open() -> Result<Self, GpuError> {
         let wish = std::env::var(ADAPTER_VARIABLE).ok().filter(|wish| !wish.is_empty());
         let adapter = choose(&instance(), wish.as_deref())?;
@@ -43,14 +45,17 @@ impl Gpu {
         device.set_device_lost_callback(move |reason, message| {
             *note.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{reason:?} {message}"));
         });
-        Ok(Self {
+        let mut gpu = Self {
             device,
             queue,
             adapter: summary,
             lost,
+            vertex_step_px: 0.0,
             #[cfg(test)]
             fault: None,
-        })
+        };
+        gpu.vertex_step_px = vertex_step_px(&gpu)?;
+        Ok(gpu)
     }
 
     /// What reports say about the adapter.
@@ -69,6 +74,12 @@ impl Gpu {
             storage_binding_bytes: limits.max_storage_buffer_binding_size,
             buffer_bytes: limits.max_buffer_size,
         }
+    }
+
+    /// The step of the grid that the rasteriser snaps vertices to, pixels of the target, as measured.
+    #[must_use]
+    pub fn vertex_step_px(&self) -> f64 {
+        self.vertex_step_px
     }
 
     pub(crate) fn has(&self, feature: Features) -> bool {

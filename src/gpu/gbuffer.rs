@@ -103,7 +103,8 @@ impl GBufferPass {
     }
 }
 
-fn pipeline(gpu: &Gpu) -> RenderPipeline {
+/// How triangle ids are drawn: nearest first in reversed depth, nothing culled.
+pub(super) fn pipeline(gpu: &Gpu) -> RenderPipeline {
     gpu.render_pipeline(&Drawing {
         label: "gbuffer",
         files: &[shader::GBUFFER],

@@ -12,6 +12,7 @@ pub(crate) mod layout;
 mod readback;
 mod recorder;
 pub mod shader;
+mod snapping;
 
 pub use adapter::{AdapterSummary, LimitsSummary, describe_adapters};
 pub(crate) use build::Drawing;

@@ -17,6 +17,7 @@ pub(crate) mod scenes;
 pub(crate) mod shot;
 #[path = "../../src/cast/testing.rs"]
 pub(crate) mod testing;
+pub(crate) mod texels;
 
 /// A torus around the y axis with a tube of radius 0.4 around a circle of radius 1; closed, as its seams coincide.
 pub(crate) fn torus(around: u32, tube: u32) -> Shape {

@@ -3,7 +3,6 @@
 
 use super::bias::{Amounts, Clearance};
 use super::filter::Kernel;
-use super::offset::raster_slack_texels;
 use super::projection::{Projection, Shares, Site, View};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
@@ -28,6 +27,8 @@ pub struct Lookup {
     pub(super) light: DVec4,
     /// Whether each tap is biased for as far as it is, not for the widest kernel.
     reaches_by_tap: bool,
+    /// The grid that vertices of casters are snapped to.
+    pub(super) vertex_step_texels: f64,
 }
 
 impl std::fmt::Debug for Lookup {
@@ -35,6 +36,9 @@ impl std::fmt::Debug for Lookup {
         f.debug_struct("Lookup").field("projection", &self.projection.name()).field("views", &self.views).finish()
     }
 }
+
+/// What most devices have.
+const USUAL_VERTEX_STEP: f64 = 1.0 / 256.0;
 
 /// Why a receiver has no place in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +113,14 @@ impl Lookup {
             format: settings.format,
             light: light.homogeneous(),
             reaches_by_tap: settings.filter.reaches_by_tap(),
+            vertex_step_texels: USUAL_VERTEX_STEP,
         }
+    }
+
+    /// The same for maps that a device draws which snaps vertices to a grid of that many texels.
+    #[must_use]
+    pub fn drawn_with_step(self, vertex_step_texels: f64) -> Self {
+        Self { vertex_step_texels, ..self }
     }
 
     /// The same lookup with no bias at all.
@@ -301,7 +312,7 @@ impl Lookup {
             border: self.border as u32,
             clearance: self.bias.clearance as u32,
             bias_kernel: self.bias.kernel as f32,
-            raster_slack_texels: raster_slack_texels(self.texels().max_element()) as f32,
+            raster_slack_texels: self.raster_slack_texels() as f32,
             cap_texels: self.bias.cap_texels as f32,
             normal_texels: self.bias.normal_texels as f32,
             depth_m: self.bias.depth_m as f32,

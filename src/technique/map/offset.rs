@@ -6,12 +6,6 @@ use super::lookup::Lookup;
 use super::projection::{Site, View};
 use glam::{DVec2, DVec3};
 
-/// Rasterisers snap vertices to a grid of at least 1/256 texel where it matters here, which tilts a plane's depth by up
-/// to that much of its slope; interpolation adds up to four units of 2⁻²⁴ per texel from the map's corner.
-pub(super) fn raster_slack_texels(texels: u32) -> f64 {
-    1.0 / 256.0 + 4.0 * f64::from(texels) * 2.0_f64.powi(-24)
-}
-
 /// Format steps that a closed-form bias adds for the rounding of both sides of the comparison.
 const FORMAT_STEPS: f64 = 4.0;
 
@@ -24,6 +18,12 @@ impl Lookup {
 
     pub(super) fn moved_along_normal(&self, view: usize, point_in_world: DVec3, normal_in_world: DVec3) -> DVec3 {
         point_in_world + normal_in_world * self.normal_offset_m(view, point_in_world, normal_in_world)
+    }
+
+    /// The rasteriser snaps vertices to a grid, which shifts a plane's depths by up to a step of its slope; interpolation adds
+    /// up to four units of 2⁻²⁴ per texel from the map's corner.
+    pub(super) fn raster_slack_texels(&self) -> f64 {
+        self.vertex_step_texels + 4.0 * f64::from(self.texels().max_element()) * 2.0_f64.powi(-24)
     }
 
     /// How far a receiver is moved along its normal.
@@ -70,7 +70,7 @@ impl Lookup {
     #[must_use]
     pub fn sufficient_bias(&self, site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
         let slope_per_texel = site.slope_per_texel(normal_in_world);
-        let reach = reach_texels + raster_slack_texels(self.texels().max_element());
+        let reach = reach_texels + self.raster_slack_texels();
         reach.dot(slope_per_texel)
             + site.slack(normal_in_world, slope_per_texel, reach_texels)
             + FORMAT_STEPS * self.format.step(site.at.depth)

@@ -50,7 +50,7 @@ impl<'j> PreparedMap<'j> {
         let scout = DeviceScout { job: &job, settings, receivers: &receivers };
         let refined = settings.projection.refine(job.scene, job.light, settings, &scout)?;
         let Refined { views, facts: fit_facts } = refined.unwrap_or(Refined { views: fitted, facts: Vec::new() });
-        let lookup = Lookup::new(views, settings, job.light);
+        let lookup = Lookup::new(views, settings, job.light).drawn_with_step(job.gpu.vertex_step_px());
         let own_numbers = settings.filter.numbers(&settings.kernel, job.light);
         let numbers = match settings.filter.moments() {
             Some(moments) => {

@@ -35,7 +35,8 @@ impl Scout for DeviceScout<'_, '_> {
             bias: bias::by_name("none"),
             ..*self.settings
         };
-        let lookup = Lookup::new(views.to_vec(), &settings, self.job.light);
+        let lookup =
+            Lookup::new(views.to_vec(), &settings, self.job.light).drawn_with_step(self.job.gpu.vertex_step_px());
         let passes = MapPasses::new(self.job.gpu, &settings, &lookup, &[], self.receivers, None)?;
         passes.draw(self.job.gpu, self.job.geometry)?;
         let indices: Vec<u32> = (0..texels * views.len() as u32).collect();

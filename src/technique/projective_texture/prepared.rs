@@ -23,7 +23,7 @@ impl<'j> PreparedPicture<'j> {
     pub(super) fn new(settings: &Settings, job: Job<'j>) -> Result<Self, TechniqueError> {
         let visible = job.fitted_to.points();
         let views = settings.map.projection.fit(job.scene, job.light, &settings.map, &visible)?;
-        let lookup = Lookup::new(views, &settings.map, job.light);
+        let lookup = Lookup::new(views, &settings.map, job.light).drawn_with_step(job.gpu.vertex_step_px());
         let receivers = ReceiverBuffer::upload(job.gpu, job.receivers, job.classes)?;
         let passes = PicturePasses::new(&job, settings, &lookup, &receivers)?;
         Ok(Self { job, settings: *settings, lookup, passes, receivers })

@@ -9,9 +9,6 @@ use super::prepared::PreparedVolume;
 use crate::scene::ProjectedTriangle;
 use glam::{DVec3, DVec4};
 
-/// Rasterisers snap vertices to a grid of 1/256 pixel.
-const SNAP_PX: f64 = 1.0 / 256.0;
-
 /// Largest error of an interpolated depth in units of 2⁻²⁴ (|dz/dx| x + |dz/dy| y + z), measured on a software
 /// rasteriser over perspective triangles.
 const DEPTH_UNITS: f64 = 28.0;
@@ -19,12 +16,12 @@ const DEPTH_UNITS: f64 = 28.0;
 /// Rounding of f32.
 const UNIT: f64 = 1.0 / (1 << 24) as f64;
 
-/// How far a face's depth at a pixel's centre may be off, 1/m.
-fn doubt(face: &ProjectedTriangle, at: DVec3) -> f64 {
+/// How far a face's depth at a pixel's centre may be off, 1/m, where the rasteriser snaps vertices to a grid of `step_px`.
+fn doubt(face: &ProjectedTriangle, at: DVec3, step_px: f64) -> f64 {
     let slope = face.inverse_depth.truncate().abs();
     let carried = slope.dot(at.truncate());
     let rounding = DEPTH_UNITS * (carried + face.inverse_depth.dot(at).abs());
-    slope.length() * SNAP_PX + UNIT * rounding
+    slope.length() * step_px + UNIT * rounding
 }
 
 impl PreparedVolume<'_> {
@@ -38,9 +35,11 @@ impl PreparedVolume<'_> {
         let clip_from_world = self.eye.clip_from_world.as_dmat4();
         let face = |corners: [DVec4; 3]| ProjectedTriangle::new(corners, &clip_from_world, size.as_dvec2());
         let Some(surface) = face(self.corners_of(receiver.triangle)) else { return true };
+        let step_px = self.job.gpu.vertex_step_px();
+        let doubt = |face: &ProjectedTriangle| doubt(face, at, step_px);
         let touches = |face: &ProjectedTriangle| {
             let gap = (face.inverse_depth - surface.inverse_depth).dot(at).abs();
-            face.sides.iter().all(|side| side.dot(at) >= -SNAP_PX) && gap <= doubt(face, at) + doubt(&surface, at)
+            face.sides.iter().all(|side| side.dot(at) >= -step_px) && gap <= doubt(face) + doubt(&surface)
         };
         let is_own = |triangle: &u32| *triangle == receiver.triangle;
         let caps = self.volumes.objects.iter().flat_map(|object| &object.used).filter(|triangle| !is_own(triangle));
@@ -73,7 +72,7 @@ mod tests {
         let centre = DVec3::new(50.0, 50.0, 1.0);
         let doubt_of = |corners: [DVec3; 3]| {
             let corners = corners.map(|p| p.extend(1.0));
-            doubt(&ProjectedTriangle::new(corners, &clip_from_world, DVec2::splat(100.0)).unwrap(), centre)
+            doubt(&ProjectedTriangle::new(corners, &clip_from_world, DVec2::splat(100.0)).unwrap(), centre, 1.0 / 256.0)
         };
         let upright = [DVec3::new(-1.0, -1.0, -4.0), DVec3::new(1.0, -1.0, -4.0), DVec3::new(0.0, 1.0, -4.0)];
         let steep = [DVec3::new(-1.0, -0.1, -4.0), DVec3::new(1.0, -0.1, -4.0), DVec3::new(0.0, -0.1, -8.0)];

@@ -3,7 +3,7 @@
 use super::homogeneous::Homogeneous;
 use super::view::{Rows, View};
 use crate::technique::map::settings::DepthMetric;
-use glam::{DMat4, DVec2, DVec4, UVec2, Vec4, dcamera::rh};
+use glam::{DMat4, DVec2, DVec3, DVec4, UVec2, Vec4, dcamera::rh};
 
 /// How rays run through the frustum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +80,16 @@ impl LightFrustum {
         clip_from_view(window, near_m, far_m, shape, reversed) * self.light_view_from_world
     }
 
+    /// Whether a point lies within the window, before the light.
+    #[must_use]
+    pub fn sees(&self, point_in_world: DVec3) -> bool {
+        let at = self.light_view_from_world.transform_point3(point_in_world);
+        let q = if self.shape == Shape::Parallel { 1.0 } else { -at.z };
+        let Window { min, max } = self.window;
+        let at = at.truncate() / q;
+        q > 0.0 && at.cmpge(min).all() && at.cmple(max).all()
+    }
+
     /// The view of a map that this frustum is.
     #[must_use]
     pub fn view(&self, name: &str) -> View {
@@ -144,7 +154,6 @@ fn clip_from_view(window: Window, near_m: f64, far_m: f64, shape: Shape, reverse
 mod tests {
     use super::*;
     use crate::scene::Bounds;
-    use glam::{DVec3, DVec4};
 
     fn view(shape: Shape, reversed: bool) -> View {
         let window = Window { min: DVec2::new(-1.0, -0.5), max: DVec2::new(2.0, 1.5) };

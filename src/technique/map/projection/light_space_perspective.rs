@@ -1,19 +1,20 @@
 //! `light-space-perspective`: a perspective warp whose axis is perpendicular to the light, so that parallel light stays
 //! parallel; how strong it is balances the errors near and far.
 //!
-//! M. Wimmer, D. Scherzer, W. Purgathofer, "Light Space Perspective Shadow Maps", 2004. Assumes a light infinitely far
-//! away. Known failures: nothing is gained where light and view are parallel; below `min_angle_deg` the map is that of
-//! `single` around what is seen. Formulas: docs/map.md#light-space-perspective.
+//! M. Wimmer, D. Scherzer, W. Purgathofer, "Light Space Perspective Shadow Maps", 2004. For a light that is somewhere it
+//! works in the light's own post-perspective space, where its rays are parallel. Known failures: nothing is gained where
+//! light and view are parallel; below `min_angle_deg` the map is that of `single` around what is seen. Formulas:
+//! docs/map.md#light-space-perspective.
 
 use super::body::{Body, range};
-use super::cascaded::forward;
 use super::fit::LEAST_WIDTH;
-use super::{LightFrustum, ONE_VIEW, Projection, Shape, View, Window, single};
+use super::light_space::{Held, LightSpace};
+use super::{ONE_VIEW, Projection, Shape, View, Window, single};
 use crate::gpu::shader::Wgsl;
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, Scene};
 use crate::technique::Unsupported;
 use crate::technique::map::settings::{Around, Fit, Settings};
-use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
+use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 
 /// One warped view.
 #[derive(Debug)]
@@ -31,8 +32,8 @@ impl Projection for LightSpacePerspective {
         ONE_VIEW
     }
 
-    fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
-        towards(light).map(|_| ())
+    fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
+        single::Single.supports(scene, light, settings)
     }
 
     fn fit(
@@ -42,80 +43,53 @@ impl Projection for LightSpacePerspective {
         settings: &Settings,
         visible: &[DVec3],
     ) -> Result<Vec<View>, Unsupported> {
-        let towards_light = towards(light)?;
         let body = Body::of(scene, light, visible);
-        let uniform = || {
-            let fit = Fit { around: Around::Receivers, ..settings.fit };
-            single::frustum(scene, light, &Settings { fit, ..*settings }, &body.receivers)
+        let around_seen = Fit { around: Around::Receivers, ..settings.fit };
+        let frustum = single::frustum(scene, light, &Settings { fit: around_seen, ..*settings }, &body.receivers)?;
+        let uniform = frustum.view("map");
+        let least_sine = settings.knobs.min_angle_rad.sin().max(LEAST_WIDTH);
+        let Some(space) = LightSpace::of(&frustum, light.homogeneous(), &scene.camera, least_sine) else {
+            return Ok(vec![uniform]);
         };
-        let axis = forward(scene);
-        let sine = towards_light.cross(axis).length();
-        let is_degenerate = sine.asin() < settings.knobs.min_angle_rad || sine < LEAST_WIDTH;
-        if is_degenerate {
-            return Ok(vec![uniform()?.view("map")]);
+        let held = space.held(&frustum, &body);
+        if held.points.is_empty() {
+            return Ok(vec![uniform]);
         }
-        let light_from_world = light_space(towards_light, axis);
-        let in_light: Vec<DVec3> = body.points().map(|point| light_from_world * point).collect();
-        let eye = light_from_world * scene.camera.eye.as_dvec3();
-        let distances = body.receivers.iter().map(|point| axis.dot(*point - scene.camera.eye.as_dvec3()));
-        let nearest_m = range(distances).0.max(scene.camera.near_m);
-        let warp = Warp::around(&in_light, eye, settings.knobs.n_opt_scale * optimal_near(nearest_m, sine, &in_light));
-        let clip_from_world = warp.clip_from_light(&in_light, settings) * DMat4::from_mat3(light_from_world);
-        let sign = if settings.reversed { -1.0 } else { 1.0 };
-        let near_far = format!("warp's centre {:.6} m before what it holds, {:.6} m deep", warp.near_m, warp.depth_m);
-        // Only its names and size are kept.
-        let plain = LightFrustum {
-            light_view_from_world: DMat4::IDENTITY,
-            window: Window::square(1.0),
-            near_m: 0.0,
-            far_m: 1.0,
-            shape: Shape::Parallel,
-            reversed: settings.reversed,
-            depth_metric: settings.depth_metric,
-            texels: UVec2::splat(settings.size),
+        let warp = Warp::around(&held, &space, settings.knobs.n_opt_scale);
+        let clip_from_world = warp.clip_from_light(&held.points, settings) * space.light_from_world;
+        let Warp { near, depth, .. } = warp;
+        let near_far = match frustum.shape {
+            Shape::Parallel => format!("warp's centre {near:.6} m before what it holds, {depth:.6} m deep"),
+            Shape::Perspective => {
+                format!("{}, warp's centre {near:.6} before what it holds, {depth:.6} deep", uniform.near_far)
+            }
         };
-        let view = View::of_clip(plain.view("map"), &clip_from_world, sign);
-        Ok(vec![View {
-            window: format!("warped, {:.2} degrees between light and view", sine.asin().to_degrees()),
-            near_far,
-            ..view
-        }])
+        let window = format!("warped, {:.2} degrees between light and view", space.sine.asin().to_degrees());
+        let sign = if settings.reversed { -1.0 } else { 1.0 };
+        Ok(vec![View { window, near_far, ..View::of_clip(uniform, &clip_from_world, sign) }])
     }
-}
-
-fn towards(light: &Light) -> Result<DVec3, Unsupported> {
-    match light.kind {
-        LightKind::Directional { towards_light } => Ok(towards_light.as_dvec3().normalize()),
-        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional lights" }),
-    }
-}
-
-/// World to light space: y towards the light, the camera looks down −z as far as y allows.
-fn light_space(towards_light: DVec3, axis: DVec3) -> DMat3 {
-    let y = towards_light;
-    let z = -(axis - axis.dot(y) * y).normalize();
-    DMat3::from_cols(y.cross(z), y, z).transpose()
 }
 
 /// The near distance of the warp that balances the errors at both ends.
-fn optimal_near(nearest_m: f64, sine: f64, in_light: &[DVec3]) -> f64 {
-    let (z_min, z_max) = range(in_light.iter().map(|point| point.z));
-    (nearest_m + (nearest_m * (nearest_m + (z_max - z_min) * sine)).sqrt()) / sine
+fn optimal_near(nearest: f64, sine: f64, depth: f64) -> f64 {
+    (nearest + (nearest * (nearest + depth * sine)).sqrt()) / sine
 }
 
 /// A perspective along −z of light space.
 struct Warp {
     centre: DVec3,
-    near_m: f64,
-    depth_m: f64,
+    near: f64,
+    depth: f64,
 }
 
 impl Warp {
-    fn around(in_light: &[DVec3], eye: DVec3, near_m: f64) -> Self {
-        let (z_min, z_max) = range(in_light.iter().map(|point| point.z));
-        let (y_min, y_max) = range(in_light.iter().map(|point| point.y));
-        let depth_m = (z_max - z_min).max(LEAST_WIDTH * near_m);
-        Self { centre: DVec3::new(eye.x, 0.5 * (y_min + y_max), z_max + near_m), near_m, depth_m }
+    fn around(held: &Held, space: &LightSpace, n_opt_scale: f64) -> Self {
+        let along = |axis: usize| range(held.points.iter().map(|point| point[axis]));
+        let [(x_min, x_max), (y_min, y_max), (z_min, z_max)] = [0, 1, 2].map(along);
+        let near = n_opt_scale * optimal_near(held.nearest, space.sine, z_max - z_min);
+        let depth = (z_max - z_min).max(LEAST_WIDTH * near);
+        let x = space.eye_x.unwrap_or(0.5 * (x_min + x_max));
+        Self { centre: DVec3::new(x, 0.5 * (y_min + y_max), z_max + near), near, depth }
     }
 
     /// (x, y, warped z) × q, q; q is the distance from the centre along −z.
@@ -124,7 +98,7 @@ impl Warp {
     }
 
     fn matrix(&self) -> DMat4 {
-        let (n, f) = (self.near_m, self.near_m + self.depth_m);
+        let (n, f) = (self.near, self.near + self.depth);
         let rows = [
             DVec4::new(n, 0.0, 0.0, 0.0),
             DVec4::new(0.0, n, 0.0, 0.0),
@@ -162,26 +136,9 @@ impl Warp {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_light_runs_along_depth_alone() {
-        let towards_light = DVec3::new(0.3, 0.8, -0.2).normalize();
-        let light_from_world = light_space(towards_light, DVec3::new(0.1, -0.2, -1.0).normalize());
-        assert!((light_from_world * towards_light - DVec3::Y).length() < 1e-12);
-        assert!((light_from_world.determinant() - 1.0).abs() < 1e-12);
-        let body: Vec<DVec3> = (0..40).map(|i| DVec3::new(f64::from(i % 7), f64::from(i % 5), -f64::from(i))).collect();
-        let warp = Warp::around(&body, DVec3::new(2.0, 1.0, 3.0), 4.0);
-        for point in body {
-            let (low, high) = (warp.apply(point), warp.apply(point + DVec3::Y));
-            let (low, high) = (low.truncate() / low.w, high.truncate() / high.w);
-            assert!((low.x - high.x).abs() < 1e-12 && (low.z - high.z).abs() < 1e-12 && high.y > low.y);
-            assert!((-1e-12..=1.0 + 1e-12).contains(&low.z), "{low}");
-        }
-    }
-
     /// With n = 1, f = 100 and light across the view: n + √(n f).
     #[test]
     fn the_optimal_near_distance_is_the_published_one() {
-        let body = [DVec3::ZERO, DVec3::new(0.0, 0.0, -99.0)];
-        assert!((optimal_near(1.0, 1.0, &body) - 11.0).abs() < 1e-12);
+        assert!((optimal_near(1.0, 1.0, 99.0) - 11.0).abs() < 1e-12);
     }
 }

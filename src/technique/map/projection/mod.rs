@@ -15,6 +15,7 @@ mod fit;
 mod frustum;
 mod homogeneous;
 mod knobs;
+mod light_space;
 mod light_space_perspective;
 mod pancaked;
 mod paraboloid;
