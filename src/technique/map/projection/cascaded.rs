@@ -39,6 +39,10 @@ impl Projection for Cascaded {
         true
     }
 
+    fn is_unwarped(&self) -> bool {
+        true
+    }
+
     fn supports(&self, _: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         let Knobs { cascades, splits_m, .. } = settings.knobs;
         if let Some(splits_m) = splits_m

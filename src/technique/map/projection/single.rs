@@ -43,7 +43,7 @@ impl Projection for Single {
         true
     }
 
-    fn is_frustum(&self) -> bool {
+    fn is_unwarped(&self) -> bool {
         true
     }
 
