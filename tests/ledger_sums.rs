@@ -115,6 +115,9 @@ const SPECS: &[&str] = &[
     "map:filter=depth-mean6,size=150,moment_format=float16",
     "map:projection=cube,seam=clamp,filter=msm5,size=90",
     "map:projection=cascaded,seam=clamp,filter=vsm3,size=90,blend_texels=5",
+    "map:projection=dual-paraboloid,seam=clamp,filter=vsm5,size=90",
+    "map:projection=dual-paraboloid,seam=clamp,filter=evsm2,size=101,depth_convention=forward,moment_format=float16",
+    "map:projection=adaptive,seam=clamp,filter=msm3,tile_texels=32,max_tiles=20,depth_convention=forward",
     "volume:extrude=degenerate-quads",
     "volume:range_mask=on",
     "volume:count=z-pass,range_mask=on,scissor=on",
@@ -150,6 +153,9 @@ const SOFT_SPECS: &[&str] = &[
     "soft:samples=3,pattern=hammersley,inner=(irregular)",
     "soft:samples=4,pattern=grid-midpoint,inner=(map:size=100,filter=msm)",
     "map:size=500,filter=pcss64,search_taps=40,bias=none",
+    "map:projection=cube,size=200,filter=pcss,depth_convention=forward",
+    "map:projection=adaptive,filter=pcss16,tile_texels=32,turn=per-pixel",
+    "map:projection=dual-paraboloid,size=300,filter=pcss,depth_convention=forward",
 ];
 
 #[test]

@@ -41,6 +41,22 @@ fn refined_everywhere_it_is_one_fine_map() {
     }
 }
 
+/// One tile is one map, bit for bit, for filters that reckon with depths, too.
+#[test]
+fn one_tile_is_one_map_for_every_filter_of_depths() {
+    let (torus, area) = (shipped("torus", [120, 90]), shipped("area", [120, 90]));
+    let shots =
+        [Shot::new(&torus, "sun"), Shot::new(&torus, "lamp"), Shot::new(&area, "panel"), Shot::new(&area, "bulb")];
+    for shot in &shots {
+        for filter in ["pcss", "vsm3", "esm4", "evsm3", "msm5", "depth-mean2"] {
+            let mask = |typed: &str| shot.evaluate(&format!("map:{typed},filter={filter},seam=clamp")).mask;
+            let tile = mask("projection=adaptive,tile_texels=300,max_level=0");
+            assert!(tile == mask("size=300"), "{} {filter}", shot.question.light.name);
+            assert!(tile != mask("size=301"), "{} {filter}", shot.question.light.name);
+        }
+    }
+}
+
 /// AD-2: more tiles, fewer wrong pixels, and with as many texels as a plain map has far fewer. Where casters are thinner
 /// than texels that holds only once these are fine enough: on posts, chance decides at first.
 #[test]

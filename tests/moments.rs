@@ -1,13 +1,14 @@
 //! Moment filters on scenes made to break them, and on one where they must not break: light bleeding, formats that
 //! overflow, and what they share with the filters that compare.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "tests")]
 
 mod support;
 
 use gnomon::cause::Cause;
 use gnomon::evaluate::Evaluation;
 use gnomon::technique::Unsupported;
+use support::models::boxes_on_diagonals;
 use support::scenes::{scene_of_texts, shipped};
 use support::shot::{Shot, parsed};
 
@@ -112,6 +113,24 @@ fn on_lit_and_on_dark_ground_moments_agree_with_comparisons() {
             // The bilinear rim of the one edge there is.
             assert!(20 < off && 30 * off < pairs.clone().count(), "{light} {filter}: {off} of {}", pairs.count());
         }
+    }
+}
+
+/// Around a lamp, across the seam of two discs: what a window holds beyond the disc's rim is its nearest texel, on the
+/// device as in the replay, and the answers are as good as those of a cube with about as many texels.
+#[test]
+fn moments_on_discs_end_at_their_rims() {
+    let scene = boxes_on_diagonals();
+    let shot = Shot::new(&scene, "lamp");
+    for filter in ["vsm5", "esm3", "evsm8", "msm3", "vsm9,depth_convention=forward"] {
+        let of = |typed: &str| shot.evaluate(&format!("map:{typed},seam=clamp,filter={filter}"));
+        let (discs, cube) = (of("projection=dual-paraboloid,size=480"), of("projection=cube,size=256"));
+        let by_precision = discs.ledger.causes.get(&Cause::Precision).copied().unwrap_or_default();
+        // Rows that took what lies beyond the rim for what it is would leave up to nine.
+        assert!(by_precision.pixels + by_precision.merely_differing <= 1, "{filter}: {by_precision:?}");
+        let (on_discs, on_cube) = (discs.verdict.pixels.wrong, cube.verdict.pixels.wrong);
+        println!("{filter}: {on_discs} wrong on discs, {on_cube} on a cube; {by_precision:?}");
+        assert!(on_discs < 2 * on_cube, "{filter}: {on_discs} {on_cube}");
     }
 }
 

@@ -14,6 +14,8 @@ use support::shot::Shot;
 
 /// A frustum that holds the floor around the penumbra, with texels of 4.5 mm there, and kernels as wide as they need be.
 const MAP: &str = "fov_deg=60,size=1024,max_texels=4096,min_texels=0,search_taps=64";
+/// The same for projections that have frusta of their own.
+const SEARCH: &str = "max_texels=4096,min_texels=0,search_taps=64";
 const TEXEL_M: f64 = 4.6 / 1024.0;
 /// Rows of this picture lie up to 7 mm apart where the penumbra is.
 const SIZE: [u32; 2] = [160, 384];
@@ -45,6 +47,20 @@ fn penumbras_are_as_wide_as_distances_and_light_make_them() {
             assert!((width - predicted).abs() < within, "gap {gap}, side {side}: {width}, not {predicted}");
         }
     }
+    // On a disc around the light, in tiles, and on a cube's face it is the same.
+    for (projection, texel_m) in [
+        ("dual-paraboloid,size=2048", 4.0 * LAMP_HEIGHT / 2048.0),
+        ("adaptive,fov_deg=60,tile_texels=128,max_level=3", TEXEL_M),
+        ("cube", 2.0 * LAMP_HEIGHT / 1024.0),
+    ] {
+        for gap in [0.1, 1.0] {
+            let spec = format!("map:filter=pcss128,{SEARCH},projection={projection}");
+            let (width, predicted) =
+                (width_m(&half_plane_of_size(0.0, SIDE, gap, SIZE), &spec), SIDE * gap / (LAMP_HEIGHT - gap));
+            let within = 0.1 * predicted + 2.0 * (texel_m + ROW_M);
+            assert!((width - predicted).abs() < within, "{projection}, gap {gap}: {width}, not {predicted}");
+        }
+    }
     // Control: a kernel of constant width knows nothing of the gap.
     let of_gap = |gap: f64| width_m(&half_plane_of_size(0.0, SIDE, gap, SIZE), "map:filter=pcf-box16,fov_deg=60");
     assert!(of_gap(1.0) < 2.0 * of_gap(0.5) - 4.0 * TEXEL_M);
@@ -56,13 +72,17 @@ fn a_light_without_extent_leaves_the_nearest_texel() {
     let torus = shipped("torus", [160, 120]);
     let half_plane = half_plane(10.0, 1e-7, 1.0);
     let shots = [Shot::new(&torus, "lamp"), Shot::new(&torus, "sun"), Shot::new(&half_plane, "lamp")];
-    for shot in &shots {
-        let mask = |filter: &str| {
-            let spec = shot.supported(&format!("map:size=300,filter={filter}"));
-            shot.evaluate_spec(&spec).mask
-        };
-        assert!(mask("pcss") == mask("nearest,depth_metric=linear"), "{}", shot.question.light.name);
-        assert!(mask("pcss") != mask("pcf-box2,depth_metric=linear"), "{}", shot.question.light.name);
+    // The plane that a paraboloid fits nearer to the casters for a search is typed.
+    for projection in ["single", "cube", "cascaded", "adaptive", "dual-paraboloid,near_m=0.1"] {
+        for shot in &shots {
+            let mask = |filter: &str| {
+                let spec = shot.supported(&format!("map:size=300,projection={projection},filter={filter}"));
+                Some(shot.evaluate_if_supported(&spec)?.mask)
+            };
+            let (what, pcss) = (format!("{projection}, {}", shot.question.light.name), mask("pcss"));
+            assert!(pcss == mask("nearest,depth_metric=linear"), "{what}");
+            assert!(pcss.is_none() || pcss != mask("pcf-box2,depth_metric=linear"), "{what}");
+        }
     }
     let wide = Shot::new(&shipped("area", [160, 120]), "panel").evaluate("map:filter=pcss").mask;
     assert!(wide.pixels.iter().flatten().any(|v| v.get() > 0.1 && v.get() < 0.9), "the panel has an extent");
@@ -131,13 +151,29 @@ fn what_does_not_go_together_is_refused_with_the_reason() {
     };
     for (typed, reason) in [
         ("map:filter=pcss,depth_metric=projected", "depth_metric=linear"),
-        ("map:filter=pcss,projection=trapezoidal", "plain frustum"),
-        ("map:projection=perspective,depth_metric=linear", "distance along one axis"),
+        ("map:filter=pcss,projection=trapezoidal", "warps"),
+        ("map:projection=perspective,depth_metric=linear", "is no distance"),
     ] {
         let refused = refusal(typed);
         assert!(
             matches!(refused, Unsupported::Combination { .. }) && refused.to_string().contains(reason),
             "{refused}"
         );
+    }
+}
+
+/// Where views measure depth alike, blockers are found beyond their sides; in tiles that is most of them.
+#[test]
+fn the_search_goes_on_across_tiles() {
+    let scene = shipped("area", [160, 120]);
+    for light in ["panel", "bulb"] {
+        let shot = Shot::new(&scene, light);
+        let wrong = |typed: &str| shot.evaluate(&format!("map:filter=pcss,{typed}")).verdict.pixels.wrong;
+        let (across, within, one) =
+            (wrong("projection=adaptive"), wrong("projection=adaptive,seam=clamp"), wrong("size=1024"));
+        assert!(3 * across < within && across < 2 * one, "{light}: {across} {within} {one}");
+        // Half the texels of a cube with faces as fine, and hardly a seam.
+        let (halves, cube) = (wrong("projection=dual-paraboloid,size=1024"), wrong("projection=cube,size=512"));
+        assert!(2 * halves < cube, "{light}: {halves} {cube}");
     }
 }

@@ -30,7 +30,8 @@ struct Lookup {
     pattern_radius_texels: f32,
     // Blocks of 2 to this many texels a side have their extremes known.
     mask_level: u32,
-    padding: u32,
+    // Whether all views measure depth alike.
+    shares_depth: u32,
 }
 @group(0) @binding(2) var<uniform> lookup: Lookup;
 @group(0) @binding(3) var stored_depths: texture_depth_2d_array;

@@ -61,9 +61,10 @@ fn slack(
 }
 
 fn nearest_texel(texel: vec2i, texels: vec2f) -> vec2i {
-    let off = 2.0 * (vec2f(texel) + 0.5) / texels - 1.0;
+    let in_square = clamp(texel, vec2i(0), vec2i(texels) - 1);
+    let off = 2.0 * (vec2f(in_square) + 0.5) / texels - 1.0;
     let radius = length(off) * RIM;
     let beyond = radius > 1.0 + 2.0 * HELD_TEXELS / min(texels.x, texels.y);
-    let nearest = select(texel, vec2i(floor((0.5 + 0.5 * off / radius) * texels)), beyond);
+    let nearest = select(in_square, vec2i(floor((0.5 + 0.5 * off / radius) * texels)), beyond);
     return clamp(nearest, vec2i(0), vec2i(texels) - 1);
 }

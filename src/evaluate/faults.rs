@@ -60,6 +60,7 @@ const FAULTS: &[Fault] = &[
     ("map/filter/pcf_edge_masked.wgsl", "max(around.y, block.y)", "min(around.y, block.y)", MASKED),
     ("map/extremes.wgsl", "low = min(low, depth)", "low = max(low, depth)", MASKED),
     ("map/filter/pcss.wgsl", "numbers[0].w", "0.5 * numbers[0].w", SOFTENED),
+    ("map/filter/pcss.wgsl", "shares_depth != 0u", "shares_depth == 2u", "map:filter=pcss,projection=adaptive"),
     ("map/filter/vsm.wgsl", "mean.y - mean.x * mean.x", "mean.y - mean.x", "map:filter=vsm"),
     ("map/filter/esm.wgsl", "mean.x * exp(-numbers[1].x * z)", "mean.x * exp(-numbers[1].x)", "map:filter=esm"),
     ("map/filter/evsm.wgsl", "-exp(-numbers[1].y", "exp(-numbers[1].y", "map:filter=evsm"),

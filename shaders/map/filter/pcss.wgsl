@@ -6,7 +6,8 @@ const PLACES: u32 = 3u;
 
 // What a receiver sees of the light, in its view.
 struct Cone {
-    axes: mat2x2f,
+    halves_in_world: mat2x3f,
+    widest: f32,
     distance_m: f32,
     near_m: f32,
     metres_per_depth: f32,
@@ -21,9 +22,9 @@ fn filter_visibility(position_in_texels: vec2f, reference: f32) -> f32 {
     var depth = 0.0;
     var blockers = 0.0;
     for (var i = 0u; i < search_taps; i++) {
-        let texel = vec2i(floor(position_in_texels + place(cone, PLACES + i, search)));
-        if is_in_view(texel) && !is_lit(reference, texel) {
-            depth += textureLoad(stored_depths, texel, own.view, 0);
+        let found = blocker(reference, texel(cone, PLACES + i, search));
+        if found.blocks {
+            depth += found.depth;
             blockers += 1.0;
         }
     }
@@ -32,61 +33,77 @@ fn filter_visibility(position_in_texels: vec2f, reference: f32) -> f32 {
     }
     let blocker_m = cone.distance_m + (depth / blockers - in_map.depth) * cone.metres_per_depth;
     let kernel = limited(cone, spread(cone, blocker_m));
-    if kernel * widest(cone) < numbers[0].z {
+    if kernel * cone.widest < numbers[0].z {
         return f32(is_lit(reference, vec2i(floor(position_in_texels))));
     }
     var lit = 0u;
     for (var i = 0u; i < filter_taps; i++) {
-        let texel = vec2i(floor(position_in_texels + place(cone, PLACES + search_taps + i, kernel)));
-        lit += u32(is_lit(reference, texel));
+        lit += u32(is_lit(reference, texel(cone, PLACES + search_taps + i, kernel)));
     }
     return f32(lit) / f32(filter_taps);
 }
 
-fn cone_of(in_map: InMap) -> Cone {
-    let view = views[own.view];
-    let axis = view.q_row.xyz;
-    if all(axis == vec3f(0.0)) {
-        return Cone(mat2x2f(), 1.0, 1.0, 0.0);
-    }
-    let u = across(view.u_row.xyz, axis);
-    let v = across(view.v_row.xyz, axis);
-    let halves = array(numbers[HALVES], numbers[HALVES + 1u]);
-    var axes = mat2x2f(
-        lookup.texels * vec2f(dot(u, halves[0].xyz), dot(v, halves[0].xyz)),
-        lookup.texels * vec2f(dot(u, halves[1].xyz), dot(v, halves[1].xyz)),
-    );
-    if halves[0].w == 1.0 {
-        let radii = lookup.texels * vec2f(length(u), length(v)) * halves[0].x;
-        axes = mat2x2f(vec2f(radii.x, 0.0), vec2f(0.0, radii.y));
-    }
-    let metres_per_depth = view.depth_sign * length(axis) / length(view.depth_row.xyz);
-    let near_depth = select(1.0, 0.0, view.depth_sign > 0.0);
-    let near_m = in_map.q + (near_depth - in_map.depth) * metres_per_depth;
-    return Cone(axes, in_map.q, near_m, metres_per_depth);
+// What a texel holds, and whether that is nearer to the light than the receiver.
+struct Found {
+    blocks: bool,
+    depth: f32,
 }
 
-fn across(row: vec3f, axis: vec3f) -> vec3f {
-    return row - axis * (dot(row, axis) / dot(axis, axis));
+fn blocker(reference: f32, texel: vec2i) -> Found {
+    if is_in_view(texel) {
+        return Found(!is_lit(reference, texel), textureLoad(stored_depths, texel, own.view, 0));
+    }
+    if lookup.shares_depth != 0u && lookup.seam == SEAM_PER_TAP {
+        let across = texel_across(texel);
+        if across.is_found {
+            let placed = across.placed;
+            let lit = compares_lit(placed.view, reference_at(placed, placed.reference, across.texel), across.texel);
+            return Found(!lit, textureLoad(stored_depths, across.texel, placed.view, 0));
+        }
+    }
+    return Found(false, 0.0);
+}
+
+fn cone_of(in_map: InMap) -> Cone {
+    if lookup.light.w == 0.0 {
+        return Cone(mat2x3f(), 0.0, 1.0, 1.0, 0.0);
+    }
+    let view = views[own.view];
+    let around = gradients(view, own.point_in_world, in_map);
+    let axis = normalize(view.depth_sign * around.depth);
+    let distance_m = dot(axis, own.point_in_world - lookup.light.xyz);
+    var halves = mat2x3f(across(numbers[HALVES].xyz, axis), across(numbers[HALVES + 1u].xyz, axis));
+    if numbers[HALVES].w == 1.0 {
+        let radius_m = numbers[HALVES].x;
+        halves = mat2x3f(radius_m * normalize(across(around.u, axis)), radius_m * normalize(across(around.v, axis)));
+    }
+    let first = distance_m * lookup.texels * vec2f(dot(around.u, halves[0]), dot(around.v, halves[0]));
+    let second = distance_m * lookup.texels * vec2f(dot(around.u, halves[1]), dot(around.v, halves[1]));
+    let metres_per_depth = view.depth_sign / length(around.depth);
+    let near_depth = select(1.0, 0.0, view.depth_sign > 0.0);
+    let near_m = distance_m + (near_depth - in_map.depth) * metres_per_depth;
+    return Cone(halves, 2.0 * max(length(first), length(second)), distance_m, near_m, metres_per_depth);
+}
+
+fn across(vector: vec3f, axis: vec3f) -> vec3f {
+    return vector - axis * dot(vector, axis);
 }
 
 fn spread(cone: Cone, blocker_m: f32) -> f32 {
     return (cone.distance_m - blocker_m) / (cone.distance_m * blocker_m);
 }
 
-fn widest(cone: Cone) -> f32 {
-    return 2.0 * max(length(cone.axes[0]), length(cone.axes[1]));
-}
-
 fn limited(cone: Cone, spread: f32) -> f32 {
     let max_texels = numbers[0].w;
-    return select(spread, max_texels / widest(cone), spread * widest(cone) > max_texels);
+    return select(spread, max_texels / cone.widest, spread * cone.widest > max_texels);
 }
 
-fn place(cone: Cone, index: u32, spread: f32) -> vec2f {
+fn texel(cone: Cone, index: u32, spread: f32) -> vec2i {
     let listed = numbers[index].xy;
+    var place = 2.0 * shifted(listed) - 1.0;
     if numbers[HALVES].w == 1.0 {
-        return spread * (cone.axes * turned(listed));
+        place = turned(listed);
     }
-    return spread * (cone.axes * (2.0 * shifted(listed) - 1.0));
+    let beside = own.point_in_world + spread * cone.distance_m * (cone.halves_in_world * place);
+    return vec2i(floor(project(views[own.view], beside).uv * lookup.texels));
 }

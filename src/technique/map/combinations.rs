@@ -18,7 +18,7 @@ pub(super) fn fits_together(settings: &Settings, light: &Light) -> Result<(), Un
     }
     if is_linear && !settings.projection.has_linear_depth() {
         return refused(format!(
-            "projection={projection} has no depth_metric=linear: its depth is not the distance along one axis"
+            "projection={projection} has no depth_metric=linear: warped along the light, its depth is no distance"
         ));
     }
     if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
@@ -32,9 +32,9 @@ pub(super) fn fits_together(settings: &Settings, light: &Light) -> Result<(), Un
             "bias=receiver-plane compares texel by texel, which filter={filter} does not: it needs another bias"
         ));
     }
-    if settings.filter.softens() && !settings.projection.is_frustum() {
+    if settings.filter.softens() && !settings.projection.is_unwarped() {
         return refused(format!(
-            "filter={filter} takes the light's extent into account in a plain frustum only, not in projection={projection}"
+            "filter={filter} sees the light's own shape around a receiver, which projection={projection} warps"
         ));
     }
     if settings.stores_midpoint() && settings.caster_sides != CasterSides::All {

@@ -135,6 +135,12 @@ impl Lookup {
         self.light
     }
 
+    /// Whether all views measure depth alike.
+    #[must_use]
+    pub(super) fn shares_depth(&self) -> bool {
+        self.projection.shares_depth()
+    }
+
     /// Width and height of every view in texels.
     #[must_use]
     pub fn texels(&self) -> UVec2 {
@@ -318,7 +324,7 @@ impl Lookup {
             seed: kernel.seed,
             pattern_radius_texels: kernel.pattern_radius_texels as f32,
             mask_level: kernel.mask_level,
-            padding: 0,
+            shares_depth: self.shares_depth().into(),
         }
     }
 }
@@ -346,7 +352,7 @@ pub(super) struct LookupUniform {
     seed: u32,
     pattern_radius_texels: f32,
     mask_level: u32,
-    padding: u32,
+    shares_depth: u32,
 }
 
 #[cfg(test)]
@@ -382,7 +388,7 @@ mod tests {
                 seed,
                 pattern_radius_texels,
                 mask_level,
-                padding,
+                shares_depth,
             });
             assert_eq!(wgsl_layout(&files, "Lookup"), in_rust, "{label}");
             let in_rust = rust_layout!(GpuView {

@@ -59,7 +59,7 @@ impl MomentPasses {
         let means = texture("moments", UVec2::new(side(texels.x), side(texels.y)));
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         let overflowed = gpu.buffer("overflowed moments", &[0_u32], usage);
-        let [of_rows, of_columns] = storage.modules(settings.filter.shader());
+        let [of_rows, of_columns] = storage.modules(settings.filter.shader(), settings.projection.layout());
         let pass = |label: &str, files: &[Wgsl], written: &Texture, bound: &[(u32, BindingResource<'_>)]| {
             let pipeline = gpu.compute_pipeline(label, files);
             let target = array_view(written);

@@ -13,6 +13,7 @@ use crate::gpu::{Geometry, Gpu, GpuError, PassRecord, Recorder};
 use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
 use glam::{DVec3, DVec4, Vec4};
 use projection::{GpuView, View};
+use std::collections::BTreeMap;
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, CompareFunction, ComputePipeline, Texture, TextureUsages,
     TextureView, TextureViewDescriptor, TextureViewDimension,
@@ -47,11 +48,16 @@ pub fn shader_modules() -> Vec<(String, Vec<Wgsl>)> {
     modules.push(("silhouette points".to_owned(), POINTS.to_vec()));
     let single = projection::by_name("single");
     modules.push(("silhouette lookup".to_owned(), [&shared_files(single)[..], &[WEDGES]].concat()));
+    let layouts: BTreeMap<&str, Wgsl> =
+        projection::registry().iter().map(|projection| (projection.layout().path, projection.layout())).collect();
     for filter in filter::registry() {
         for (moments, is_half) in filter.moments().into_iter().flat_map(|moments| [(moments, false), (moments, true)]) {
-            let [rows, columns] = Storage::of(moments.count(), is_half).modules(filter.shader());
-            let label = |axis: &str| format!("map moments by {axis} {} half={is_half}", filter.choice().name);
-            modules.extend([(label("rows"), rows), (label("columns"), columns)]);
+            for (path, layout) in &layouts {
+                let [rows, columns] = Storage::of(moments.count(), is_half).modules(filter.shader(), *layout);
+                let label =
+                    |axis: &str| format!("map moments by {axis} {} half={is_half} {path}", filter.choice().name);
+                modules.extend([(label("rows"), rows), (label("columns"), columns)]);
+            }
         }
     }
     for projection in projection::registry() {

@@ -48,6 +48,14 @@ impl Looked<'_> {
     pub(super) fn tap(&self, texel: IVec2) -> Option<Tap> {
         self.lookup.tap(&self.placed, self.receiver.normal_in_world, texel)
     }
+
+    /// The same where blockers are looked for: in the receiver's view, and beyond its side where views measure depth
+    /// alike.
+    fn searched(&self, texel: IVec2) -> Option<Tap> {
+        let view = self.placed.view;
+        let is_own = self.lookup.views[view].holds(texel);
+        self.tap(texel).filter(|tap| is_own || (self.lookup.shares_depth() && tap.placed.view != view))
+    }
 }
 
 impl<'r> Reading<'r> {
@@ -89,7 +97,7 @@ impl<'r> Reading<'r> {
             for depths in [Depths::Exact, Depths::Unbiased, Depths::Stored] {
                 let mut searched = Vec::new();
                 let mut blocker = |texel: IVec2| {
-                    searched.extend(lookup.texel_index(view, texel));
+                    searched.extend(looked.searched(texel).and_then(index));
                     self.blocker(depths, &looked, texel)
                 };
                 self.texels_of(depths, &looked, &mut blocker, &mut |texel, _| {
@@ -132,18 +140,17 @@ impl<'r> Reading<'r> {
                 pixel: looked.pixel,
                 view: &looked.lookup.views[looked.placed.view],
                 placed: &looked.placed,
+                light: looked.lookup.light(),
             };
             return self.map.settings.filter.taps_at(&asked, blocker, tap);
         };
         tap(points.texel(looked.placed.position_in_texels), 1.0);
     }
 
-    /// The depth of a texel of the receiver's own view that is nearer to the light than the receiver.
+    /// The depth of a texel that is nearer to the light than the receiver.
     fn blocker(&self, depths: Depths, looked: &Looked<'_>, texel: IVec2) -> Option<f64> {
-        let view = looked.placed.view;
-        looked.lookup.texel_index(view, texel)?;
-        let tap = looked.tap(texel)?;
-        self.depth(depths, &tap).filter(|depth| !looked.lookup.is_lit(view, tap.placed.reference, *depth))
+        let tap = looked.searched(texel)?;
+        self.depth(depths, &tap).filter(|depth| !looked.lookup.is_lit(tap.placed.view, tap.placed.reference, *depth))
     }
 
     /// The texel that alone answers for a receiver.

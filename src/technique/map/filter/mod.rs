@@ -27,7 +27,7 @@ use super::projection::View;
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::Light;
 use crate::technique::param::Choice;
-use glam::{DVec2, IVec2, Vec4};
+use glam::{DVec2, DVec4, IVec2, Vec4};
 
 /// `numbers` of the shaders.
 const NUMBERS: Wgsl = wgsl!("map/numbers.wgsl");
@@ -79,8 +79,9 @@ pub trait Filter: Sync {
         reads
     }
 
-    /// The same where taps follow from what the map holds. `blocker` gives the depth of a texel of the receiver's view
-    /// that is nearer to the light than the receiver, `None` for others. No taps at all: lit.
+    /// The same where taps follow from what the map holds. `blocker` gives the depth of a texel of the receiver's view, or
+    /// of one beyond its side that measures depth alike, if it is nearer to the light than the receiver; `None` for
+    /// others. No taps at all: lit.
     fn taps_at(&self, asked: &Asked<'_>, _blocker: Blocker<'_>, tap: &mut dyn FnMut(IVec2, f64)) {
         self.taps(asked.kernel, asked.placed.position_in_texels, tap);
     }
@@ -134,6 +135,8 @@ pub struct Asked<'a> {
     pub view: &'a View,
     /// The receiver in it.
     pub placed: &'a Placed,
+    /// The light: w = 1, or 0 with a vector towards it.
+    pub light: DVec4,
 }
 
 /// A registered filter; the first one for a name that no declared parameter can hold.

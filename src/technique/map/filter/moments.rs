@@ -57,6 +57,8 @@ impl<M: Moments> Filter for M {
 
 /// Means that a lookup reads.
 pub(super) const READS: u32 = 4;
+/// What layouts build on.
+const VIEW: Wgsl = wgsl!("map/view.wgsl");
 /// `z_of` of the shaders.
 const Z: Wgsl = wgsl!("map/moments/z.wgsl");
 /// What lookups of moment filters build on.
@@ -96,9 +98,9 @@ impl Storage {
         self.format.block_copy_size(None).unwrap_or(0).into()
     }
 
-    /// The modules that take the means, along rows and along columns.
-    pub(in crate::technique::map) fn modules(self, filter: Wgsl) -> [Vec<Wgsl>; 2] {
-        [vec![NUMBERS, self.file, Z, CHEBYSHEV, filter, ROWS], vec![NUMBERS, self.file, COLUMNS]]
+    /// The modules that take the means, along rows and along columns, of views with some layout.
+    pub(in crate::technique::map) fn modules(self, filter: Wgsl, layout: Wgsl) -> [Vec<Wgsl>; 2] {
+        [vec![NUMBERS, self.file, Z, CHEBYSHEV, VIEW, layout, filter, ROWS], vec![NUMBERS, self.file, COLUMNS]]
     }
 }
 

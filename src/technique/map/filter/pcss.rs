@@ -1,17 +1,18 @@
 //! `pcss`: percentage-closer soft shadows. The mean distance of the blockers around the receiver gives the width of the
 //! penumbra that they throw, and that the width of the kernel.
 //!
-//! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane, parallel to the map's, and
-//! that the light looks at them from there: the kernel is then the light as the receiver sees it through that plane, with
-//! a rectangle's own sides or a sphere's disc. Known failures: blockers at several distances, blockers that the search
+//! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane across the axis that depth is
+//! measured along (the map's or, on a paraboloid, the ray's own), and that the light looks at them from there: the kernel
+//! is then the light as the receiver sees it through that plane, with a rectangle's own sides or a sphere's disc. Known failures: blockers at several distances, blockers that the search
 //! misses, and the limits of the widths (`filter-width`). Formulas: docs/map.md#percentage-closer-soft-shadows.
 
 use super::turn::{TURN, shifted, turned};
 use super::{Asked, Blocker, Filter, Kernel, NUMBERS};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::{Light, LightKind};
+use crate::technique::map::projection::Gradients;
 use crate::technique::param::{Choice, ChoiceNumber};
-use glam::{DVec2, DVec3, IVec2, Vec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, IVec2, Vec2, Vec4};
 use std::f64::consts::PI;
 
 /// k taps in the kernel, and others in the search.
@@ -65,8 +66,7 @@ impl Filter for Pcss {
         let search = cone.limited(cone.spread(cone.near_m), kernel.max_texels);
         let (mut depth, mut blockers) = (0.0, 0.0);
         for i in 0..kernel.search_taps {
-            let place = cone.place(asked, PLACES + i as usize, search);
-            if let Some(found) = blocker((position + place).floor().as_ivec2()) {
+            if let Some(found) = blocker(cone.texel(asked, PLACES + i as usize, search)) {
                 depth += found;
                 blockers += 1.0;
             }
@@ -76,13 +76,13 @@ impl Filter for Pcss {
         }
         let blocker_m = cone.distance_m + (depth / blockers - asked.placed.depth) * cone.metres_per_depth;
         let spread = cone.limited(cone.spread(blocker_m), kernel.max_texels);
-        if spread * cone.widest() < kernel.min_texels {
+        if spread * cone.widest < kernel.min_texels {
             tap(position.floor().as_ivec2(), 1.0);
             return;
         }
         for i in 0..kernel.number {
-            let place = cone.place(asked, PLACES + (kernel.search_taps + i) as usize, spread);
-            tap((position + place).floor().as_ivec2(), 1.0 / f64::from(kernel.number));
+            let texel = cone.texel(asked, PLACES + (kernel.search_taps + i) as usize, spread);
+            tap(texel, 1.0 / f64::from(kernel.number));
         }
     }
 
@@ -94,6 +94,9 @@ impl Filter for Pcss {
         let halves = match light.kind {
             LightKind::Rectangle { half_width, half_height, .. } => [half_width.extend(0.0), half_height.extend(0.0)],
             LightKind::Sphere { radius_m, .. } => [Vec4::new(radius_m, 0.0, 0.0, 1.0), Vec4::ZERO],
+            LightKind::Sun { angular_radius_rad, .. } => {
+                [Vec4::new(angular_radius_rad.tan() as f32, 0.0, 0.0, 1.0), Vec4::ZERO]
+            }
             LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => [Vec4::ZERO; 2],
         };
         let places = if halves[0].w == 1.0 { disc } else { square };
@@ -107,9 +110,11 @@ impl Filter for Pcss {
 
 /// What a receiver sees of the light, in its view.
 struct Cone {
-    /// The light's half sides, or the radii along u and v, at one metre from the light: texels × metres.
-    axes: [DVec2; 2],
-    /// Of the receiver along the view's axis.
+    /// The light's half sides, or two radii of the disc that it shows, across the axis that depth is measured along: metres.
+    halves_in_world: [DVec3; 2],
+    /// How wide the wider of both is in the map, were the receiver's distance 1: texels × metres.
+    widest: f64,
+    /// Of the receiver along the axis.
     distance_m: f64,
     /// Of the view's near plane.
     near_m: f64,
@@ -119,59 +124,57 @@ struct Cone {
 
 impl Cone {
     fn of(asked: &Asked<'_>) -> Self {
-        let (view, rows) = (asked.view, &asked.view.rows);
-        let xyz = |row: Vec4| row.truncate().as_dvec3();
-        let axis = xyz(rows.q);
-        if axis == DVec3::ZERO {
+        if asked.light.w == 0.0 {
             // Parallel rays come from a light without extent.
-            return Self { axes: [DVec2::ZERO; 2], distance_m: 1.0, near_m: 1.0, metres_per_depth: 0.0 };
+            let (halves_in_world, widest) = ([DVec3::ZERO; 2], 0.0);
+            return Self { halves_in_world, widest, distance_m: 1.0, near_m: 1.0, metres_per_depth: 0.0 };
         }
-        let across = |row: Vec4| xyz(row) - axis * (xyz(row).dot(axis) / axis.length_squared());
-        let (u, v) = (across(rows.u), across(rows.v));
-        let texels = view.texels.as_dvec2();
-        let on_map = |half: Vec3| texels * DVec2::new(u.dot(half.as_dvec3()), v.dot(half.as_dvec3()));
-        let halves = [asked.numbers[HALVES], asked.numbers[HALVES + 1]];
-        let radius_m = f64::from(halves[0].x);
-        let axes = if halves[0].w == 1.0 {
-            [DVec2::X, DVec2::Y].map(|along| along * texels * DVec2::new(u.length(), v.length()) * radius_m)
+        let (view, point) = (asked.view, asked.placed.point_in_world);
+        let Gradients { u, v, depth } = view.site(point).gradients;
+        let axis = (view.depth_sign * depth).normalize();
+        let distance_m = axis.dot(point - asked.light.truncate());
+        let across = |vector: DVec3| vector - axis * vector.dot(axis);
+        let sides = [asked.numbers[HALVES], asked.numbers[HALVES + 1]];
+        let radius_m = f64::from(sides[0].x);
+        let halves_in_world = if sides[0].w == 1.0 {
+            [u, v].map(|along| radius_m * across(along).normalize())
         } else {
-            halves.map(|half| on_map(half.truncate()))
+            sides.map(|side| across(side.truncate().as_dvec3()))
         };
-        let metres_per_depth = view.depth_sign * axis.length() / xyz(rows.depth).length();
-        let distance_m = view.project(asked.placed.point_in_world).q;
-        let near_depth = if view.depth_sign > 0.0 { 0.0 } else { 1.0 };
+        let on_map = |half: DVec3| distance_m * view.texels.as_dvec2() * DVec2::new(u.dot(half), v.dot(half));
+        let [first, second] = halves_in_world.map(|half| on_map(half).length());
+        let metres_per_depth = view.depth_sign / depth.length();
+        let near_depth = 1.0 - view.cleared();
         Self {
-            axes,
+            halves_in_world,
+            widest: 2.0 * first.max(second),
             distance_m,
             near_m: distance_m + (near_depth - asked.placed.depth) * metres_per_depth,
             metres_per_depth,
         }
     }
 
-    /// How wide the light is, through a point at a distance before the receiver: 1/metres, a factor of its axes.
+    /// How wide the light is, through a point at a distance before the receiver: 1/metres, a factor of its halves.
     fn spread(&self, blocker_m: f64) -> f64 {
         (self.distance_m - blocker_m) / (self.distance_m * blocker_m)
     }
 
-    /// Width of the wider axis, texels × metres.
-    fn widest(&self) -> f64 {
-        2.0 * self.axes[0].length().max(self.axes[1].length())
-    }
-
     /// A spread that is no wider than that many texels.
     fn limited(&self, spread: f64, max_texels: f64) -> f64 {
-        if spread * self.widest() > max_texels { max_texels / self.widest() } else { spread }
+        if spread * self.widest > max_texels { max_texels / self.widest } else { spread }
     }
 
-    /// Where a tap lies from the receiver, texels.
-    fn place(&self, asked: &Asked<'_>, index: usize, spread: f64) -> DVec2 {
+    /// The texel of a tap.
+    fn texel(&self, asked: &Asked<'_>, index: usize, spread: f64) -> IVec2 {
         let listed = Vec2::new(asked.numbers[index].x, asked.numbers[index].y).as_dvec2();
         let place = if asked.numbers[HALVES].w == 1.0 {
             turned(asked.kernel, asked.pixel, listed)
         } else {
             2.0 * shifted(asked.kernel, asked.pixel, listed) - 1.0
         };
-        spread * (place.x * self.axes[0] + place.y * self.axes[1])
+        let [first, second] = self.halves_in_world;
+        let beside = asked.placed.point_in_world + spread * self.distance_m * (place.x * first + place.y * second);
+        (asked.view.project(beside).uv * asked.view.texels.as_dvec2()).floor().as_ivec2()
     }
 }
 

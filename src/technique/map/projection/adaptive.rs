@@ -38,6 +38,14 @@ impl Projection for Adaptive {
         true
     }
 
+    fn is_unwarped(&self) -> bool {
+        true
+    }
+
+    fn shares_depth(&self) -> bool {
+        true
+    }
+
     fn supports(&self, scene: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         single::Single.supports(scene, light, &finest(settings))
     }

@@ -39,6 +39,10 @@ impl Projection for Cascaded {
         true
     }
 
+    fn is_unwarped(&self) -> bool {
+        true
+    }
+
     fn supports(&self, _: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
         let Knobs { cascades, splits_m, .. } = settings.knobs;
         if let Some(splits_m) = splits_m
@@ -139,8 +143,10 @@ impl Projection for Cascaded {
 
 fn direction(light: &Light) -> Result<DVec3, Unsupported> {
     match light.kind {
-        LightKind::Directional { towards_light } => Ok(-towards_light.as_dvec3().normalize()),
-        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional lights" }),
+        LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+            Ok(-towards_light.as_dvec3().normalize())
+        }
+        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional and sun lights" }),
     }
 }
 

@@ -42,7 +42,7 @@ impl Projection for Cube {
         true
     }
 
-    fn is_frustum(&self) -> bool {
+    fn is_unwarped(&self) -> bool {
         true
     }
 

@@ -12,7 +12,7 @@ use super::paraboloid::{Paraboloid, least_cosine, rim_texels};
 use super::pieces::Cut;
 use super::{LightFrustum, Projection, Shape, Shares, View, Window, cube};
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::scene::{Light, LightKind, Mesh, Scene};
+use crate::scene::{Light, LightKind, Mesh, Scene, distance_to_triangle};
 use crate::technique::Unsupported;
 use crate::technique::map::settings::{DepthMetric, Settings};
 use glam::{DMat3, DMat4, DVec3, UVec2, Vec4};
@@ -24,6 +24,8 @@ pub(super) struct DualParaboloid;
 
 /// Far plane beyond the farthest receiver by this share of its distance.
 const FAR_SLACK: f64 = 1e-3;
+/// Near plane before the nearest caster by this share of its distance, where it is fitted to that.
+const NEAR_SLACK: f64 = 1e-2;
 
 impl Projection for DualParaboloid {
     fn name(&self) -> &'static str {
@@ -36,6 +38,18 @@ impl Projection for DualParaboloid {
 
     fn layout(&self) -> Wgsl {
         wgsl!("map/paraboloid.wgsl")
+    }
+
+    fn has_linear_depth(&self) -> bool {
+        true
+    }
+
+    fn is_unwarped(&self) -> bool {
+        true
+    }
+
+    fn shares_depth(&self) -> bool {
+        true
     }
 
     fn has_rasterised_depth(&self) -> bool {
@@ -57,8 +71,8 @@ impl Projection for DualParaboloid {
         let receivers: Vec<[DVec3; 3]> =
             receiving_triangles(scene).map(|corners| corners.map(|c| c - position)).collect();
         let farthest_m = receivers.iter().flatten().map(|corner| corner.length()).fold(f64::MIN_POSITIVE, f64::max);
-        // Depth is linear, so a near plane at the light wastes nothing.
-        let (near_m, far_m) = settings.fit.planes_m((0.0, (1.0 + FAR_SLACK) * farthest_m.min(light.range_m)))?;
+        let fitted = (nearest_m(scene, position, settings), (1.0 + FAR_SLACK) * farthest_m.min(light.range_m));
+        let (near_m, far_m) = settings.fit.planes_m(fitted)?;
         let texels = UVec2::splat(settings.size);
         let cut = Cut::around(scene, position, settings.knobs.max_edge_rad)?;
         let front = axis(light, settings, position);
@@ -103,6 +117,17 @@ impl Projection for DualParaboloid {
     }
 }
 
+/// Depth is linear, so a near plane at the light wastes nothing; where blockers are searched, however, no farther than
+/// from one at the nearest caster.
+fn nearest_m(scene: &Scene, position: DVec3, settings: &Settings) -> f64 {
+    if !settings.filter.softens() {
+        return 0.0;
+    }
+    let casters = scene.meshes.iter().filter(|mesh| mesh.casts).flat_map(|mesh| mesh.triangles.clone());
+    let distances_m = casters.map(|triangle| distance_to_triangle(position, scene.triangle_in_world(triangle)));
+    (1.0 - NEAR_SLACK) * distances_m.reduce(f64::min).unwrap_or(0.0)
+}
+
 fn receiving_triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> + '_ {
     let receiving = |mesh: &&Mesh| mesh.receives;
     let triangles = scene.meshes.iter().filter(receiving).flat_map(|mesh| mesh.triangles.clone());
@@ -130,7 +155,7 @@ fn axis(light: &Light, settings: &Settings, position: DVec3) -> DVec3 {
         LightKind::Point { aim, .. } | LightKind::Rectangle { aim, .. } | LightKind::Sphere { aim, .. } => {
             Some(aim.as_dvec3() - position)
         }
-        LightKind::Directional { .. } => None,
+        LightKind::Directional { .. } | LightKind::Sun { .. } => None,
     };
     let aim = aim.filter(|_| !settings.knobs.looks_down).and_then(DVec3::try_normalize).unwrap_or(DVec3::NEG_Y);
     // A texel at the middle of the disc spans four over the map's size.

@@ -71,7 +71,7 @@ pub trait Projection: Sync {
     fn layout(&self) -> Wgsl {
         wgsl!("map/homogeneous.wgsl")
     }
-    /// Whether its views can store distance along an axis from the light's position in place of projected depth.
+    /// Whether its views can store distance from the light, along one axis or along the rays, in place of projected depth.
     fn has_linear_depth(&self) -> bool {
         false
     }
@@ -83,9 +83,13 @@ pub trait Projection: Sync {
     fn has_one_view(&self) -> bool {
         self.shader() == ONE_VIEW
     }
-    /// Whether its views are plain frusta with their apex at the light's position: q is the distance along the axis.
-    fn is_frustum(&self) -> bool {
+    /// Whether its views look out from the light without a warp, so that a penumbra around a receiver has the light's shape.
+    fn is_unwarped(&self) -> bool {
         false
+    }
+    /// Whether all its views measure depth alike, so that what one holds can be compared in another.
+    fn shares_depth(&self) -> bool {
+        self.has_one_view()
     }
     /// Whether it can hold this light's receivers.
     ///

@@ -119,8 +119,10 @@ impl Layout for Paraboloid {
         rounding + bent_m / f64::from(rows.depth_q.w).abs()
     }
 
+    /// First of the square, then of the disc: means of texels are taken of rows that end at the square's sides.
     fn nearest_texel(&self, texel: IVec2, texels: UVec2) -> IVec2 {
         let size = texels.as_dvec2();
+        let texel = texel.clamp(IVec2::ZERO, texels.as_ivec2() - 1);
         let off = 2.0 * (texel.as_dvec2() + 0.5) / size - 1.0;
         let radius = off.length() * RIM;
         let beyond = radius > held_radius(size.min_element());
