@@ -116,8 +116,9 @@ fn scaling_by_a_power_of_two_changes_no_bit() {
             let scene = placed("torus", SMALL, placement);
             let view = View::new(&gpu, &scene).unwrap();
             let question = ask(&view, light);
-            let mask = judged(&view, &question, "map:size=256,filter=pcf-box2").mask;
-            (question.classes.clone(), question.truth.mask.clone(), mask)
+            let maps = ["map:size=256,filter=pcf-box2", "map:size=256,projection=light-space-perspective"];
+            let masks = maps.map(|typed| judged(&view, &question, typed).mask);
+            (question.classes.clone(), question.truth.mask.clone(), masks)
         };
         let as_filed = answers(0);
         for exponent in [-20, -3, 1, 10] {

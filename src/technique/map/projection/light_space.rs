@@ -1,6 +1,7 @@
 //! Light space: the light's rays fall along −y, and the camera looks down −z as far as that allows. For parallel light it
-//! is the world, turned. For a light that is somewhere it is the light's post-perspective space (x/w, 1/w, z/w), w the
-//! distance along the light's axis: there its rays are parallel, and what holds for parallel light holds for it.
+//! is the world, turned. For a light that is somewhere it is the light's post-perspective space (x/w, n/w, z/w), w the
+//! distance along the light's axis and n that of the near plane: there its rays are parallel, and what holds for parallel
+//! light holds for it.
 //!
 //! M. Wimmer, D. Scherzer, W. Purgathofer, "Light Space Perspective Shadow Maps", 2004.
 
@@ -32,9 +33,6 @@ pub(super) struct Held {
     pub(super) nearest: f64,
 }
 
-/// (x, y, z, 1) to (x, 1, z, −y): perspective along −y, the nearer to the eye the higher.
-const PERSPECTIVE: DMat4 = DMat4::from_cols(DVec4::X, DVec4::NEG_W, DVec4::Z, DVec4::Y);
-
 impl LightSpace {
     /// Around a light's frustum, whose `light` is its apex, or a direction. `None` where the camera looks along its axis.
     pub(super) fn of(frustum: &LightFrustum, light: DVec4, camera: &Camera, least_sine: f64) -> Option<Self> {
@@ -49,7 +47,10 @@ impl LightSpace {
         let turned = DMat4::from_mat3(DMat3::from_cols(y.cross(z), y, z).transpose());
         let (light_from_world, eye_x) = match frustum.shape {
             Shape::Parallel => (turned, Some(turned.transform_point3(eye).x)),
-            Shape::Perspective => (PERSPECTIVE * turned * DMat4::from_translation(-light.truncate()), None),
+            Shape::Perspective => {
+                let perspective = DMat4::from_cols(DVec4::X, DVec4::NEG_W, DVec4::Z, frustum.near_m * DVec4::Y);
+                (perspective * turned * DMat4::from_translation(-light.truncate()), None)
+            }
         };
         Some(Self { light_from_world, sine, eye_x, eye, axis, near_m: camera.near_m })
     }
@@ -64,10 +65,10 @@ impl LightSpace {
         let points = match frustum.shape {
             Shape::Parallel => body.points().map(|point| self.place(point)).collect(),
             Shape::Perspective => {
-                let (top, bottom) = (1.0 / frustum.near_m, 1.0 / frustum.far_m);
+                let bottom = frustum.near_m / frustum.far_m;
                 let column = |point: &DVec3| {
                     let at = self.place(*point);
-                    [DVec3::new(at.x, at.y.clamp(bottom, top), at.z), DVec3::new(at.x, top, at.z)]
+                    [DVec3::new(at.x, at.y.clamp(bottom, 1.0), at.z), DVec3::new(at.x, 1.0, at.z)]
                 };
                 receivers.iter().flat_map(column).collect()
             }

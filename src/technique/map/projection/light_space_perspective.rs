@@ -61,7 +61,7 @@ impl Projection for LightSpacePerspective {
         let near_far = match frustum.shape {
             Shape::Parallel => format!("warp's centre {near:.6} m before what it holds, {depth:.6} m deep"),
             Shape::Perspective => {
-                format!("{}, warp's centre {near:.6} before what it holds, {depth:.6} deep", uniform.near_far)
+                format!("{}, warp's centre {near:.6} tangents before what it holds, {depth:.6} deep", uniform.near_far)
             }
         };
         let window = format!("warped, {:.2} degrees between light and view", space.sine.asin().to_degrees());
