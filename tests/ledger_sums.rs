@@ -71,6 +71,8 @@ const SPECS: &[&str] = &[
     "map:projection=cube,size=128,filter=pcf-box5",
     "map:projection=cascaded,size=128,blend_texels=6,filter=pcf-box3",
     "map:projection=cascaded,cascade_fit=box,selection=by-projection,size=90,bias=slope,cascades=8,lambda=1",
+    "map:projection=cascaded,cascades=3,splits_m=2/5,overlap_ratio=0.3,size=80,bias=slope,filter=pcf-box3",
+    "map:projection=cascaded,cascade_fit=box,cascades=2,splits_m=4,overlap_ratio=0.5,blend_texels=3,size=70",
     "map:projection=cascaded,max_distance_m=4,size=60,border=shadow,caster_sides=away-facing",
     "map:projection=perspective,size=100",
     "map:projection=perspective,size=200,bias=slope,depth_convention=forward,virtual_back_m=0,filter=pcf-box4",

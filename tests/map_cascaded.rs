@@ -75,6 +75,65 @@ fn blending_leaves_no_step_at_a_split() {
     assert_eq!(last.0, 3, "all cascades were passed");
 }
 
+/// How far along the camera's axis the first and the second share change.
+fn along_axis(scene: &Scene, typed: &str, distance_m: f64) -> (usize, f64) {
+    let lookup = Lookup::new(views(scene, typed, &[]), &Settings::of(&parsed(typed)), scene.light("sun").unwrap());
+    let along = (scene.camera.target - scene.camera.eye).as_dvec3().normalize();
+    let shares = lookup.select(scene.camera.eye.as_dvec3() + along * distance_m);
+    (shares.first, shares.second_weight)
+}
+
+#[test]
+fn typed_splits_are_where_cascades_end() {
+    let scene = shipped("posts", [160, 120]);
+    let typed = "map:projection=cascaded,splits_m=10/20/50,max_distance_m=100,lambda=1,first_far_m=3";
+    for (distance_m, expected) in [(4.0, 0), (9.9, 0), (10.1, 1), (19.9, 1), (20.1, 2), (49.9, 2), (50.1, 3), (99.0, 3)]
+    {
+        assert_eq!(along_axis(&scene, typed, distance_m), (expected, 0.0), "{distance_m}");
+    }
+    let three = Settings::of(&parsed("map:projection=cascaded,splits_m=10/20"));
+    let refused = three.projection.supports(&scene, scene.light("sun").unwrap(), &three).unwrap_err().to_string();
+    assert!(refused.contains("splits_m=10/20 makes 3 cascades") && refused.contains("cascades=4"), "{refused}");
+    let shot = Shot::new(&scene, "sun");
+    let by_formula = shot.evaluate("map:projection=cascaded,cascades=2,size=300,min_distance_m=1,max_distance_m=64");
+    let typed = "map:projection=cascaded,cascades=2,size=300,min_distance_m=1,max_distance_m=64,splits_m=20.25";
+    assert!(by_formula.mask == shot.evaluate(typed).mask, "(8 + 32.5) / 2");
+}
+
+/// The weight grows over a share of the split's distance, and the view that is blended in holds all of that band.
+#[test]
+fn cascades_overlap_by_a_share_of_the_splits_distance() {
+    let scene = shipped("posts", [160, 120]);
+    let splits =
+        "map:size=512,projection=cascaded,splits_m=10/20/50,max_distance_m=100,min_distance_m=0.1,fit_margin_texels=0";
+    let overlapping = format!("{splits},overlap_ratio=0.2");
+    for (distance_m, first, weight) in
+        [(7.9, 0, 0.0), (8.5, 0, 0.25), (9.5, 0, 0.75), (10.5, 1, 0.0), (18.0, 1, 0.5), (45.0, 2, 0.5), (90.0, 3, 0.0)]
+    {
+        let found = along_axis(&scene, &overlapping, distance_m);
+        assert!(found.0 == first && (found.1 - weight).abs() < 1e-5, "{distance_m}: {found:?}");
+    }
+    // The wider band counts: here 64 texels.
+    assert!(along_axis(&scene, &format!("{splits},overlap_ratio=0.01,blend_texels=64"), 45.0).1 > 0.1);
+    // Seen: the view's corners at some distances, among them where bands start.
+    let size = scene.image_size;
+    let corners = [DVec2::ZERO, DVec2::new(size.x.into(), 0.0), DVec2::new(0.0, size.y.into()), size.as_dvec2()];
+    let seen_at = |distance_m: f64| {
+        corners.map(|corner| scene.camera.eye.as_dvec3() + distance_m * scene.camera.ray_through(size, corner))
+    };
+    let bands = [(1, 8.001), (2, 16.001), (3, 40.001)];
+    let visible: Vec<DVec3> =
+        [1.0, 8.001, 10.0, 16.001, 20.0, 40.001, 50.0, 99.0].into_iter().flat_map(seen_at).collect();
+    let held = |typed: &str| {
+        let views = views(&scene, &format!("{typed},cascade_fit=box"), &visible);
+        let of_band =
+            bands.iter().flat_map(|(view, distance_m)| seen_at(*distance_m).map(|point| views[*view].project(point)));
+        of_band.filter(|at| at.uv.min_element() >= 0.0 && at.uv.max_element() < 1.0).count()
+    };
+    assert_eq!(held(&overlapping), 12);
+    assert!(held(splits) < 12, "without it a cascade starts at its split");
+}
+
 /// CA-3 and CA-5: a point of the world keeps its place within its texel however the camera moves and turns.
 #[test]
 fn a_stable_fit_keeps_the_texel_grid_and_a_tight_one_does_not() {

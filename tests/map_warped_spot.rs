@@ -131,6 +131,38 @@ fn a_warp_from_far_away_is_single() {
     assert!(warped[1] / warped[0] > 1.5 * single[1] / single[0]);
 }
 
+/// High above a floor and across the view, a spot's space is the floor, and the warp is that of a sun: the largest texel
+/// along the view is the published one.
+#[test]
+fn across_the_view_the_largest_texel_is_the_suns() {
+    const WITHIN: f64 = 0.02;
+    const SIZE: f64 = 4096.0;
+    let (near_m, far_m) = (1.0_f64, 100.0_f64);
+    let mut scene = scene_of_texts(
+        "about = \"a floor\"\nsize = [100, 100]\n\
+         [camera]\neye = [0, 0.5, 0]\ntarget = [0, 0.5, -1]\nfov_y_deg = 90\nnear = 1.0\n\
+         [[mesh]]\nfile = \"model.obj\"\n\
+         [[light]]\nname = \"spot\"\nkind = \"spot\"\nposition = [0, 60, -50]\ntarget = [0, 0, -50]\ncone_deg = 140\n",
+        "o Floor\nv -99 0 -100\nv -99 0 99\nv 99 0 99\nv 99 0 -100\nf 1 2 3 4\n",
+    );
+    let at = |i: u32| near_m * (far_m / near_m).powf(f64::from(i) / 60.0);
+    let seen: Vec<DVec3> =
+        (0..=60).map(at).flat_map(|d| [-1.0, 0.0, 1.0].map(|x| DVec3::new(x * d, 0.0, -d))).collect();
+    for (height_m, side_m) in [(60.0, 0.0), (90.0, 0.0), (60.0, 20.0)] {
+        let light = DVec3::new(side_m, height_m, -50.0);
+        scene.lights[0].kind = spot(light, light - DVec3::Y, 1.2);
+        let view = fitted(&scene, &format!("{WARPED},size={SIZE},fit_margin_texels=0"), &seen);
+        let along = |d: f64| {
+            let steps = view.site(DVec3::new(0.0, 0.0, -d)).texel_steps_m(DVec3::Y);
+            SIZE * steps.map(|step| step.z.abs()).into_iter().fold(0.0, f64::max) / d
+        };
+        let largest = (0..=60).map(at).map(along).fold(0.0, f64::max);
+        let expected = (far_m - near_m) / (near_m * far_m).sqrt();
+        println!("{light}: {largest:.3} along (predicted {expected:.3})");
+        assert!((largest / expected - 1.0).abs() < WITHIN, "{largest} {expected}");
+    }
+}
+
 #[test]
 fn a_spots_texels_are_as_large_in_the_picture_as_predicted() {
     const WITHIN: f64 = 0.10;
@@ -164,6 +196,25 @@ fn a_caster_behind_the_eye_casts() {
     assert!(in_shadow > 500 && wrong * 20 < in_shadow, "{wrong} of {in_shadow}");
     let cut = shot.evaluate(&format!("{WARPED},near_m=7"));
     assert!(named(&cut, &[Cause::ClippingNear]).len() * 10 > 9 * in_shadow, "a near plane behind the wall loses it");
+}
+
+/// Casters all around the light: rays end at it, where its space has no end.
+#[test]
+fn a_light_within_its_shade_casts_like_any_other() {
+    let scene = "about = \"a lamp in a shade\"\nsize = [160, 120]\n\
+         [camera]\neye = [0, 3, 7]\ntarget = [0, 1, 0]\n\
+         [[mesh]]\nfile = \"model.obj\"\n\
+         [[light]]\nname = \"spot\"\nkind = \"spot\"\nposition = [0.1, 3, 0.05]\ntarget = [0, 0, 0]\ncone_deg = 120\n";
+    // A pyramid without a bottom around the light, and a sail below.
+    let model = "o Floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n\
+                 o Shade\nv -0.6 2.5 -0.6\nv -0.6 2.5 0.6\nv 0.6 2.5 0.6\nv 0.6 2.5 -0.6\nv 0 3.5 0\nf 5 6 9\nf 6 7 9\nf 7 8 9\nf 8 5 9\n\
+                 o Sail\nv -1 0.2 -1\nv 1 0.2 -1\nv 0 1.5 -1\nf 10 11 12\n";
+    let scene = scene_of_texts(scene, model);
+    let shot = Shot::new(&scene, "spot");
+    let in_shadow = shadowed(&shot.question.truth.mask);
+    let wrong = shot.evaluate(WARPED).verdict.pixels.wrong as usize;
+    println!("{wrong} wrong of {in_shadow} in shadow");
+    assert!(in_shadow > 500 && wrong * 50 < in_shadow, "{wrong} of {in_shadow}");
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn with_lights_moved(scene: &Scene, step_m: f32) -> Scene {
             | LightKind::Spot { position, .. }
             | LightKind::Rectangle { position, .. }
             | LightKind::Sphere { position, .. } => position.x += step_m,
-            LightKind::Directional { towards_light } => {
+            LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
                 *towards_light = (*towards_light + Vec3::X * step_m / 4.0).normalize();
             }
         }

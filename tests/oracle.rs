@@ -61,22 +61,20 @@ fn every_ray_of_every_shipped_scene_is_answered_alike() {
 #[test]
 fn area_lights_are_answered_alike_point_by_point_and_by_an_independent_estimate() {
     let gpu = Gpu::open().unwrap();
-    let scene = shipped("area", [256, 192]);
-    let view = View::new(&gpu, &scene).unwrap();
-    let mut mitsuba = mitsuba(&view);
-    for light in &scene.lights {
-        let what = format!("area / {}", light.name);
-        let question = view.ask(light, &Unwatched).unwrap();
-        let check = check(&mut mitsuba, &view, light);
-        assert_agrees(&what, &check);
-        let settled = check.listed.iter().map(|ray| ray.pixel).collect::<Vec<_>>();
-        let differing = differing(&question.truth.mask, &check.mask);
-        assert!(differing.iter().all(|pixel| settled.contains(pixel)), "{what}: counts differ where no ray does");
-        let mut rejected = |light: &Light| {
-            let truth = &question.truth.mask;
-            mitsuba.estimate(&view.casters, light, &view.receivers, truth).unwrap().expect("an area light").rejected
-        };
-        assert_eq!(rejected(light), [0_u32; 0], "{what}");
+    for name in ["area", "sundial"] {
+        let scene = shipped(name, [256, 192]);
+        let view = View::new(&gpu, &scene).unwrap();
+        let mut mitsuba = mitsuba(&view);
+        for light in &scene.lights {
+            let what = format!("{name} / {}", light.name);
+            let question = view.ask(light, &Unwatched).unwrap();
+            let check = check(&mut mitsuba, &view, light);
+            assert_agrees(&what, &check);
+            let settled = check.listed.iter().map(|ray| ray.pixel).collect::<Vec<_>>();
+            let differing = differing(&question.truth.mask, &check.mask);
+            assert!(differing.iter().all(|pixel| settled.contains(pixel)), "{what}: counts differ where no ray does");
+            assert_eq!(rejected(&mut mitsuba, &view, light, &question.truth.mask), [0_u32; 0], "{what}");
+        }
     }
 }
 
@@ -92,15 +90,33 @@ fn an_estimate_of_a_light_moved_by_a_centimetre_is_rejected() {
     for light in &scene.lights {
         let small = shrunk(light, SHRUNK);
         let question = view.ask(&small, &Unwatched).unwrap();
-        let mut rejected = |light: &Light| {
-            let truth = &question.truth.mask;
-            mitsuba.estimate(&view.casters, light, &view.receivers, truth).unwrap().expect("an area light").rejected
-        };
-        assert_eq!(rejected(&small), [0_u32; 0], "area / {}", light.name);
-        let of_moved = rejected(&moved(&small, 0.01)).len();
+        let truth = &question.truth.mask;
+        assert_eq!(rejected(&mut mitsuba, &view, &small, truth), [0_u32; 0], "area / {}", light.name);
+        let of_moved = rejected(&mut mitsuba, &view, &moved(&small, 0.01), truth).len();
         println!("area / {}: {of_moved} pixels", light.name);
         assert!(of_moved > 10, "area / {}: rejected at {of_moved} pixels only", light.name);
     }
+}
+
+#[test]
+fn an_estimate_of_a_sun_turned_by_its_own_radius_is_rejected() {
+    let gpu = Gpu::open().unwrap();
+    let scene = shipped("sundial", [256, 192]);
+    let view = View::new(&gpu, &scene).unwrap();
+    let mut mitsuba = mitsuba(&view);
+    let (sun, question) = (&scene.lights[0], view.ask(&scene.lights[0], &Unwatched).unwrap());
+    let mut turned = sun.clone();
+    let LightKind::Sun { towards_light, angular_radius_rad, .. } = &mut turned.kind else { panic!("a sun") };
+    let aside = towards_light.any_orthonormal_vector();
+    *towards_light = (*towards_light + aside * *angular_radius_rad as f32).normalize();
+    let of_turned = rejected(&mut mitsuba, &view, &turned, &question.truth.mask).len();
+    assert!(of_turned > 10, "rejected at {of_turned} pixels only");
+}
+
+/// Pixels at which the counted shares and an estimate of a light cannot both be right.
+fn rejected(mitsuba: &mut Mitsuba, view: &View<'_>, light: &Light, truth: &TruthMask) -> Vec<u32> {
+    let estimate = mitsuba.estimate(view.scene, &view.casters, light, &view.receivers, truth).unwrap();
+    estimate.expect("an area light").rejected
 }
 
 /// The area light, with sides or radius times a factor.
@@ -112,6 +128,7 @@ fn shrunk(light: &Light, factor: f32) -> Light {
             *half_height *= factor;
         }
         LightKind::Sphere { radius_m, .. } => *radius_m *= factor,
+        LightKind::Sun { angular_radius_rad, .. } => *angular_radius_rad *= f64::from(factor),
         LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => {}
     }
     shrunk
@@ -130,7 +147,9 @@ fn moved(light: &Light, step_m: f32) -> Light {
         | LightKind::Spot { position, .. }
         | LightKind::Rectangle { position, .. }
         | LightKind::Sphere { position, .. } => *position += Vec3::X * step_m,
-        LightKind::Directional { towards_light } => *towards_light = (*towards_light + Vec3::X * step_m).normalize(),
+        LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+            *towards_light = (*towards_light + Vec3::X * step_m).normalize();
+        }
     }
     moved
 }

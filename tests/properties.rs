@@ -137,7 +137,7 @@ fn turned(scene: &Scene, degrees: f64) -> Scene {
     for light in &mut scene.lights {
         match &mut light.kind {
             LightKind::Point { position, aim, .. } => [position, aim].into_iter().for_each(turn),
-            LightKind::Directional { towards_light } => turn(towards_light),
+            LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => turn(towards_light),
             LightKind::Spot { position, axis, .. } => [position, axis].into_iter().for_each(turn),
             LightKind::Rectangle { position, aim, half_width, half_height, .. } => {
                 [position, aim, half_width, half_height].into_iter().for_each(turn);

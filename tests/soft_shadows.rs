@@ -6,7 +6,7 @@
 mod support;
 
 use gnomon::cause::Cause;
-use support::penumbra::{EDGE_HEIGHT, LAMP_HEIGHT, SIDE, SNAP_M, across_edge, half_plane};
+use support::penumbra::{EDGE_HEIGHT, LAMP_HEIGHT, SIDE, SNAP_M, across_edge, half_plane, half_plane_under_sun};
 use support::scenes::shipped;
 use support::shot::{Shot, parsed};
 
@@ -67,6 +67,34 @@ fn a_penumbra_is_monotone_as_wide_as_predicted_and_ends_in_light_and_umbra() {
         let predicted = SIDE * gap / (LAMP_HEIGHT - gap);
         // The outer sixty-fourths are dark or lit already, and the picture has pixels.
         assert!((width - predicted * 63.0 / 64.0).abs() < 0.03 + SNAP_M, "gap {gap}: {width}, not {predicted}");
+    }
+}
+
+/// The places across an edge where a penumbra begins and ends.
+fn ends(points: &mut [(f64, f64)]) -> [f64; 2] {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    [points.iter().find(|p| p.1 < 1.0).unwrap().0, points.iter().rfind(|p| p.1 > 0.0).unwrap().0]
+}
+
+/// A sun's rays differ by its angular diameter: at an elevation e the shadow of an edge ends between gap · cot(e + r) and
+/// gap · cot(e − r).
+#[test]
+fn a_suns_penumbra_lies_between_the_rays_to_its_rim() {
+    for (elevation_deg, diameter_deg, gap) in [(90.0, 20.0, 0.6), (50.0, 12.0, 0.6), (25.0, 8.0, 0.4)] {
+        let scene = half_plane_under_sun(elevation_deg, diameter_deg, gap);
+        let shot = Shot::new(&scene, "sun");
+        let cot = |degrees: f64| gap / degrees.to_radians().tan();
+        let expected = [cot(elevation_deg + 0.5 * diameter_deg), cot(elevation_deg - 0.5 * diameter_deg)];
+        // The rim's outermost points are 1/√512 of the radius inside it, and the picture has pixels.
+        let tolerance = 0.05 * (expected[1] - expected[0]) + 0.03;
+        for spec in ["soft:samples=64,inner=(volume)", "soft:samples=256,inner=(map:size=2048)"] {
+            let found = ends(&mut across_edge(&shot, &shot.evaluate(spec).mask, 0.0));
+            let off = [found[0] - expected[0], found[1] - expected[1]].map(f64::abs);
+            assert!(off.iter().all(|off| *off < tolerance), "{elevation_deg}, {spec}: {found:?}, not {expected:?}");
+        }
+        // Control: a light without the extent has no such penumbra.
+        let hard = ends(&mut across_edge(&shot, &shot.evaluate("volume").mask, 0.0));
+        assert!(hard[1] - hard[0] < 0.2 * (expected[1] - expected[0]), "{hard:?}");
     }
 }
 

@@ -68,6 +68,7 @@ class Oracle:
             np.asarray(about["centre"], dtype=np.float64),
             half_sides if len(half_sides) else None,
             float(about["radius_m"]),
+            bool(about["is_from_receiver"]),
         )
         mean, variance = estimate.estimate(
             self._placed(),

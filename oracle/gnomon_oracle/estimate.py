@@ -20,11 +20,15 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Emitter:
-    """A rectangle (two half sides) or, where there are none, a sphere seen as the disc that faces the receiver."""
+    """A rectangle (two half sides) or, where there are none, a sphere seen as the disc that faces the receiver.
+
+    With ``is_from_receiver`` the centre is a vector from each receiver: the light is the same from everywhere.
+    """
 
     centre: Points
     half_sides: Points | None
     radius_m: float
+    is_from_receiver: bool = False
 
     def draw(self, receivers_m: Points, random: np.random.Generator) -> Points:
         """Return one point for each receiver, uniform in area."""
@@ -33,7 +37,8 @@ class Emitter:
             at = random.uniform(-1.0, 1.0, (count, 2))
             on_rectangle: Points = self.centre + at @ self.half_sides
             return on_rectangle
-        towards = self.centre - receivers_m
+        centre = receivers_m + self.centre if self.is_from_receiver else self.centre
+        towards = centre - receivers_m
         towards /= np.linalg.norm(towards, axis=1, keepdims=True)
         # Any direction that is not along `towards` spans the disc with it.
         helper = np.where(np.abs(towards[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])  # noqa: PLR2004
@@ -42,7 +47,7 @@ class Emitter:
         radius = self.radius_m * np.sqrt(random.random(count))[:, None]
         angle = random.uniform(0.0, 2 * np.pi, count)[:, None]
         on_disc: Points = np.cos(angle) * right + np.sin(angle) * np.cross(towards, right)
-        return self.centre + radius * on_disc
+        return centre + radius * on_disc
 
 
 def estimate(

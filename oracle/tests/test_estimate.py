@@ -27,6 +27,7 @@ def row() -> NDArray[np.float64]:
 EMITTERS = {
     "rectangle": Emitter(np.array([0.0, 4.0, 0.0]), np.array([[0.5, 0.0, 0.0], [0.0, 0.0, -0.5]]), 0.0),
     "sphere": Emitter(np.array([0.0, 4.0, 0.0]), None, 0.5),
+    "sun": Emitter(np.array([0.0, 400.0, 0.0]), None, 100.0, is_from_receiver=True),
 }
 
 
@@ -34,6 +35,11 @@ def share(kind: str, x: NDArray[np.float64]) -> NDArray[np.float64]:
     """What the edge leaves of the light as seen from the floor."""
     if kind == "rectangle":
         return np.clip(0.5 - 3 * x, 0, 1)
+    if kind == "sun":
+        # The disc of tangents up to 1/4, cut where the edge is seen.
+        t = np.clip(-4 * x, -1, 1)
+        circle: NDArray[np.float64] = (np.arccos(-t) + t * np.sqrt(1 - t * t)) / np.pi
+        return circle
     # The plane through receiver and edge, and the disc that faces the receiver.
     normal = np.column_stack([np.ones_like(x), x]) / np.hypot(1, x)[:, None]
     towards = np.column_stack([-x, np.full_like(x, 4.0)])

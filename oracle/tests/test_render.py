@@ -23,6 +23,10 @@ LIGHTS: dict[str, tuple[dict[str, Any], float]] = {
         INTENSITY / HEIGHT**2,
     ),
     "sphere": ({"kind": "sphere", "position": [0, HEIGHT, 0], "radius_m": 0.25}, np.pi * INTENSITY * (0.25 / 2) ** 2),
+    "sun": (
+        {"kind": "sun", "direction": [0, -1, 0], "position": [0, 1e6, 0], "radius_m": 1e6 * np.tan(0.05), "sine": np.sin(0.05)},
+        INTENSITY,
+    ),
     "rectangle": (
         {"kind": "rectangle", "position": [0, HEIGHT, 0], "half_width": [0.1, 0, 0], "half_height": [0, 0, -0.2]},
         INTENSITY * 0.08 / HEIGHT**2,
@@ -66,7 +70,7 @@ def test_lights_without_extent_have_their_closed_form_at_every_scale(mi: Any, ki
     assert centre(mi, kind, 1, scale) != pytest.approx(1.02 * expected, rel=RELATIVE)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "rectangle"])
+@pytest.mark.parametrize("kind", ["sphere", "rectangle", "sun"])
 def test_area_lights_have_theirs_but_for_noise(mi: Any, kind: str) -> None:
     if variant.is_scalar(mi):
         pytest.skip("whole images need a libLLVM")

@@ -58,7 +58,7 @@ pub(super) fn ask<'s>(
     let Some(mitsuba) = mitsuba else { return Ok(question) };
     let asked = mitsuba.check(view.scene, &view.casters, light, &view.receivers, &question.classes, terminal).and_then(
         |check| {
-            let estimate = mitsuba.estimate(&view.casters, light, &view.receivers, &question.truth.mask)?;
+            let estimate = mitsuba.estimate(view.scene, &view.casters, light, &view.receivers, &question.truth.mask)?;
             Ok(MitsubaCheck { estimate, ..check })
         },
     );

@@ -194,7 +194,9 @@ fn with_light_turned(scene: &Scene, light: &str, steps: f64) -> Scene {
         let direction = |vector: Vec3| (turn * vector.as_dvec3()).as_vec3();
         let place = |point: Vec3| (centre + turn * (point.as_dvec3() - centre)).as_vec3();
         match &mut light.kind {
-            LightKind::Directional { towards_light } => *towards_light = direction(*towards_light),
+            LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+                *towards_light = direction(*towards_light);
+            }
             LightKind::Point { position, .. } | LightKind::Sphere { position, .. } => *position = place(*position),
             LightKind::Spot { position, axis, .. } => (*position, *axis) = (place(*position), direction(*axis)),
             LightKind::Rectangle { position, half_width, half_height, .. } => {

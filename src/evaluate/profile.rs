@@ -97,17 +97,25 @@ fn pixels_between(from: IVec2, to: IVec2) -> Vec<UVec2> {
     pixels
 }
 
-/// s (d_r − d_b)/d_b with distances along the way the light faces, and s the light's extent along the line; `None` for a
-/// light without extent.
+/// s (d_r − d_b)/d_b with distances along the way the light faces, and s the light's extent along the line; of a sun
+/// 2 tan(α) (d_r − d_b) with its angular radius α, over the share of the line that runs across the light. `None` for a light
+/// without extent.
 fn predicted_width_m(light: &Light, receiver: DVec3, blocker: DVec3, direction: DVec3) -> Option<f64> {
     let centre = light.homogeneous().truncate();
+    if let LightKind::Sun { angular_radius_rad, .. } = light.kind {
+        // Across the light: a slope stretches it.
+        let width_m = 2.0 * angular_radius_rad.tan() * centre.dot(blocker - receiver);
+        return Some(width_m / direction.reject_from(centre).length());
+    }
     let (forward, extent_m) = match light.kind {
         LightKind::Rectangle { half_width, half_height, .. } => {
             let along = |half: glam::Vec3| 2.0 * half.as_dvec3().dot(direction).abs();
             (emission_normal(half_width, half_height), along(half_width) + along(half_height))
         }
         LightKind::Sphere { radius_m, .. } => ((receiver - centre).try_normalize()?, 2.0 * f64::from(radius_m)),
-        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => return None,
+        LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } | LightKind::Sun { .. } => {
+            return None;
+        }
     };
     let [to_receiver, to_blocker] = [receiver, blocker].map(|point| forward.dot(point - centre));
     (to_blocker > 0.0).then(|| extent_m * (to_receiver - to_blocker) / to_blocker)

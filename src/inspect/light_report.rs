@@ -40,7 +40,7 @@ impl LightReport {
                 let frustum = Frustum::around_cone(position.as_dvec3(), axis.as_dvec3(), outer_rad);
                 (frustum.depth_range(casting()), frustum.depth_range(receiving()))
             }
-            LightKind::Directional { towards_light } => {
+            LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
                 let along = -towards_light.as_dvec3().normalize();
                 let start = triangles(scene, true, true).flatten().map(|p| p.dot(along)).fold(f64::INFINITY, f64::min);
                 (parallel(along, start, casting()), parallel(along, start, receiving()))

@@ -23,8 +23,8 @@ pub struct Emitter {
 enum Points {
     /// A light without extent, homogeneous.
     One(DVec4),
-    /// The same for every receiver, each rounded to f32.
-    Fixed(Vec<DVec3>),
+    /// The same for every receiver, each rounded to f32; homogeneous.
+    Fixed(Vec<DVec4>),
     /// On the disc through a sphere's centre that faces the receiver.
     Facing { centre: DVec3, radius_m: f64, on_unit_disc: Vec<DVec2> },
 }
@@ -37,7 +37,7 @@ impl Emitter {
             LightKind::Rectangle { position, half_width, half_height, samples, .. } => {
                 let place = |at: DVec2| {
                     let offset = half_width.as_dvec3() * at.x + half_height.as_dvec3() * at.y;
-                    (position.as_dvec3() + offset).as_vec3().as_dvec3()
+                    (position.as_dvec3() + offset).as_vec3().as_dvec3().extend(1.0)
                 };
                 Points::Fixed(square(samples).map(|at| place(2.0 * at - 1.0)).collect())
             }
@@ -46,6 +46,12 @@ impl Emitter {
                 radius_m: radius_m.into(),
                 on_unit_disc: disc(samples).collect(),
             },
+            LightKind::Sun { towards_light, angular_radius_rad, samples } => {
+                let towards = towards_light.as_dvec3();
+                let direction =
+                    |at: DVec2| sun_direction(towards, angular_radius_rad, at).as_vec3().as_dvec3().extend(0.0);
+                Points::Fixed(disc(samples).map(direction).collect())
+            }
             LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => {
                 Points::One(light.homogeneous())
             }
@@ -63,7 +69,8 @@ impl Emitter {
         }
     }
 
-    /// Every point as a receiver sees it, homogeneous: w = 0 with a vector towards a directional light.
+    /// Every point as a receiver sees it, homogeneous: w = 0 with a unit vector towards a light infinitely far
+    /// away.
     pub fn points_for(&self, receiver_in_world: DVec3) -> impl Iterator<Item = DVec4> + '_ {
         let [right, up] = match &self.points {
             Points::Facing { centre, .. } => facing_axes(centre - receiver_in_world),
@@ -71,7 +78,7 @@ impl Emitter {
         };
         (0..self.count()).map(move |index| match &self.points {
             Points::One(light) => *light,
-            Points::Fixed(points) => points[index].extend(1.0),
+            Points::Fixed(points) => points[index],
             Points::Facing { centre, radius_m, on_unit_disc } => {
                 let at = on_unit_disc[index] * radius_m;
                 (centre + right * at.x + up * at.y).extend(1.0)
@@ -83,6 +90,14 @@ impl Emitter {
     pub fn segments_from(&self, receiver_in_world: DVec3, scene_radius_m: f64) -> impl Iterator<Item = Segment> + '_ {
         self.points_for(receiver_in_world).map(move |point| Segment::towards(receiver_in_world, point, scene_radius_m))
     }
+}
+
+/// The unit vector towards a place of the unit disc on a sun.
+#[must_use]
+pub fn sun_direction(towards_centre: DVec3, angular_radius_rad: f64, on_unit_disc: DVec2) -> DVec3 {
+    let [right, up] = facing_axes(towards_centre);
+    let at = on_unit_disc * angular_radius_rad.tan();
+    (towards_centre + right * at.x + up * at.y).normalize()
 }
 
 /// Two unit vectors across a direction, the same for the same direction.
@@ -186,6 +201,27 @@ mod tests {
         };
         let rates = [16, 64, 256].map(|count| mean(4 * count) / mean(count));
         assert!(rates.iter().all(|rate| *rate < 0.5), "{rates:?}");
+    }
+
+    #[test]
+    fn a_suns_points_fill_its_cone_and_lie_about_its_centre() {
+        let towards = DVec3::new(0.3, 0.8, -0.4).normalize();
+        let radius_rad = 3.0_f64.to_radians();
+        let kind = LightKind::Sun { towards_light: towards.as_vec3(), angular_radius_rad: radius_rad, samples: 400 };
+        let sun = Light { name: "sun".into(), kind, intensity: glam::Vec3::ONE, range_m: f64::INFINITY };
+        let emitter = Emitter::new(&sun);
+        let directions: Vec<DVec4> = emitter.points_for(DVec3::ZERO).collect();
+        assert!(emitter.points_for(DVec3::ONE * 1e6).eq(directions.iter().copied()), "the same from everywhere");
+        let angles: Vec<f64> = directions.iter().map(|d| d.truncate().angle_between(towards)).collect();
+        assert!(directions.iter().all(|d| d.w == 0.0 && (d.truncate().length() - 1.0).abs() < 1e-6));
+        assert!(
+            angles.iter().all(|angle| *angle <= radius_rad + 1e-6) && angles.iter().any(|a| *a > 0.99 * radius_rad)
+        );
+        let mean = directions.iter().map(|d| d.truncate()).sum::<DVec3>() / 400.0;
+        assert!(mean.angle_between(towards) < 0.02 * radius_rad);
+        // Half of the disc's area lies within √½ of its radius.
+        let inner = angles.iter().filter(|angle| angle.tan() < radius_rad.tan() * 0.5_f64.sqrt()).count();
+        assert_eq!(inner, 200);
     }
 
     #[test]

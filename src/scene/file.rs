@@ -100,15 +100,15 @@ pub enum ScaleEntry {
 pub struct LightEntry {
     /// Unique; default: the kind, then kind-2, kind-3 …
     pub name: Option<String>,
-    /// point, directional, spot, rectangle or sphere.
+    /// point, directional, spot, rectangle, sphere or sun.
     pub kind: String,
-    /// Where it is: all kinds but directional.
+    /// Where it is: all kinds but directional and sun.
     pub position: Option<[f64; 3]>,
-    /// The way a directional light travels.
+    /// The way the light of a directional light or a sun travels.
     pub direction: Option<[f64; 3]>,
     /// What a spot or rectangle aims at, and a point's or sphere's single frustum; default: the receivers' centre.
     pub target: Option<[f64; 3]>,
-    /// Linear RGB: W/sr for point and spot, W/m² for directional, W/(m² sr) for rectangle and sphere; default 1 each.
+    /// Linear RGB: W/sr for point and spot, W/m² for directional and sun, W/(m² sr) for rectangle and sphere; default 1 each.
     pub intensity: Option<[f64; 3]>,
     /// Beyond this distance the light is off; default: never.
     pub range: Option<f64>,
@@ -128,7 +128,9 @@ pub struct LightEntry {
     pub height: Option<f64>,
     /// Radius of a sphere light, metres.
     pub radius: Option<f64>,
-    /// Number of points of a rectangle or sphere light that its exact visibility counts; default 64.
+    /// The angle under which a sun is seen, degrees; default 0.533.
+    pub angular_diameter_deg: Option<f64>,
+    /// Number of points of a rectangle, sphere or sun light that its exact visibility counts; default 64.
     pub samples: Option<u32>,
 }
 

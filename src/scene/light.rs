@@ -32,15 +32,15 @@ pub struct Light {
     pub name: String,
     /// What kind, and where.
     pub kind: LightKind,
-    /// Linear RGB. W/sr for point and spot, W/m² (irradiance) for directional, W/(m² sr) (radiance) for rectangle and
-    /// sphere.
+    /// Linear RGB. W/sr for point and spot, W/m² (irradiance) for directional and sun, W/(m² sr) (radiance) for rectangle
+    /// and sphere.
     pub intensity: Vec3,
     /// Beyond this distance the light is off, metres; infinite if the scene sets none.
     pub range_m: f64,
 }
 
-/// The closed list of light kinds. A rectangle and a sphere have an extent: they are *area lights*, which a point may see
-/// in part.
+/// The closed list of light kinds. A rectangle, a sphere and a sun have an extent: they are *area lights*, which a point may
+/// see in part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LightKind {
     /// Shines equally in all directions.
@@ -94,6 +94,15 @@ pub enum LightKind {
         /// How many points of the disc that a receiver sees of it the exact visibility counts.
         samples: u32,
     },
+    /// A disc that is infinitely far away: a directional light that is seen under an angle.
+    Sun {
+        /// Unit vector towards its centre, rounded to f32.
+        towards_light: Vec3,
+        /// Half the angle under which it is seen, radians, < π/2.
+        angular_radius_rad: f64,
+        /// How many points of it the exact visibility counts.
+        samples: u32,
+    },
 }
 
 /// How a spot light falls off from its axis to its outer angle.
@@ -123,7 +132,9 @@ impl Light {
             | LightKind::Spot { position, .. }
             | LightKind::Rectangle { position, .. }
             | LightKind::Sphere { position, .. } => position.as_dvec3().extend(1.0),
-            LightKind::Directional { towards_light } => towards_light.as_dvec3().extend(0.0),
+            LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+                towards_light.as_dvec3().extend(0.0)
+            }
         }
     }
 
@@ -137,7 +148,7 @@ impl Light {
     /// Whether it has an extent, so that a point may see part of it.
     #[must_use]
     pub fn is_area(&self) -> bool {
-        matches!(self.kind, LightKind::Rectangle { .. } | LightKind::Sphere { .. })
+        matches!(self.kind, LightKind::Rectangle { .. } | LightKind::Sphere { .. } | LightKind::Sun { .. })
     }
 
     /// Whether it shines at a point at all: within its range, a spot's cone, before a rectangle, outside a sphere.
@@ -152,7 +163,7 @@ impl Light {
                 emission_normal(half_width, half_height).dot(from_light) > 0.0
             }
             LightKind::Sphere { radius_m, .. } => from_light.length() > f64::from(radius_m),
-            LightKind::Point { .. } | LightKind::Directional { .. } => true,
+            LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Sun { .. } => true,
         };
         in_range && before_it
     }
@@ -166,6 +177,7 @@ impl Light {
             LightKind::Spot { .. } => "spot",
             LightKind::Rectangle { .. } => "rectangle",
             LightKind::Sphere { .. } => "sphere",
+            LightKind::Sun { .. } => "sun",
         }
     }
 }

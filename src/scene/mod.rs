@@ -22,7 +22,7 @@ mod source;
 pub use bare::scene_file_for_obj;
 pub use camera::{Camera, Far};
 pub use distance::distance_to_triangle;
-pub use emitter::Emitter;
+pub use emitter::{Emitter, sun_direction};
 pub use error::{Place, SceneError};
 pub use file::SceneFile;
 pub use light::{Falloff, Light, LightKind, Segment, emission_normal};

@@ -50,7 +50,15 @@ fn incident_from(light: &Light, from: DVec4, mode: LightingMode, point_in_world:
             let angle_rad = axis.as_dvec3().angle_between(-towards_light);
             distance_factor(mode, attenuation, distance_m) * cone_factor(falloff, outer_rad, angle_rad)?
         }
-        LightKind::Rectangle { .. } | LightKind::Sphere { .. } if mode == LightingMode::Classic => 1.0,
+        LightKind::Rectangle { .. } | LightKind::Sphere { .. } | LightKind::Sun { .. }
+            if mode == LightingMode::Classic =>
+        {
+            1.0
+        }
+        LightKind::Sun { towards_light: centre, angular_radius_rad, .. } => {
+            // The solid angle of each of the points, over the irradiance of the whole disc.
+            centre.as_dvec3().dot(towards_light).powi(3) / angular_radius_rad.cos().powi(2)
+        }
         LightKind::Rectangle { half_width, half_height, .. } => {
             let area_m2 = 4.0 * half_width.as_dvec3().length() * half_height.as_dvec3().length();
             let cosine = emission_normal(half_width, half_height).dot(-towards_light);
@@ -169,6 +177,15 @@ mod tests {
         let (d2, cosine) = (f64::from(position.length_squared()), f64::from(position.normalize().y));
         let expected = PI * 3.0 * 0.25 / d2 * cosine;
         assert!((irradiance(&sphere) / expected - 1.0).abs() < 1e-3, "{} is not {expected}", irradiance(&sphere));
+    }
+
+    #[test]
+    fn a_sun_straight_above_irradiates_by_its_intensity_however_wide() {
+        for angular_radius_rad in [1e-6, 0.00465, 0.3, 1.2] {
+            let kind = LightKind::Sun { towards_light: Vec3::Y, angular_radius_rad, samples: 4096 };
+            let sun = Light { name: "sun".into(), kind, intensity: Vec3::splat(3.0), range_m: f64::INFINITY };
+            assert!((irradiance(&sun) / 3.0 - 1.0).abs() < 1e-3, "{} at {angular_radius_rad}", irradiance(&sun));
+        }
     }
 
     #[test]

@@ -179,6 +179,7 @@ fn lights(at: Vec3) -> Vec<Light> {
             samples: 4,
         },
         LightKind::Sphere { position: at, aim: at - Vec3::Y, radius_m: 0.1, samples: 4 },
+        LightKind::Sun { towards_light, angular_radius_rad: 0.01, samples: 4 },
     ];
     let light = |kind| {
         let light = Light { name: String::new(), kind, intensity: Vec3::ONE, range_m: f64::INFINITY };

@@ -5,6 +5,7 @@
 //! Adding one: a Rust file (or folder) here, at most one WGSL file of the same stem in `shaders/`, one line in
 //! [`registry`]. Tests, CLI and reports pick it up from there.
 
+mod ascending;
 mod cost;
 mod effective_bias;
 pub mod footprint;
@@ -25,6 +26,7 @@ mod spec;
 mod unsupported;
 pub mod volume;
 
+pub use ascending::Ascending;
 pub use cost::{Cost, GpuTime, PassTime};
 pub use effective_bias::{BiasAt, EffectiveBias, Lengths, Range};
 pub use matrix::{MatrixRow, light_kinds, matrix};

@@ -1,6 +1,6 @@
 //! Parameters, declared once per technique: from the declaration come parsing, `list`, canonical names, sweeps.
 
-use super::Spec;
+use super::{Ascending, Spec};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -41,6 +41,13 @@ pub enum Kind {
         /// Whether `auto` is legal.
         auto: bool,
     },
+    /// A few ascending numbers with slashes between them, or `auto`.
+    Ascending {
+        /// Smallest legal number.
+        min: f64,
+        /// Largest legal number.
+        max: f64,
+    },
     /// Another technique, in parentheses: `(volume:count=z-fail)`.
     Technique,
 }
@@ -74,6 +81,8 @@ pub enum Value {
     Integer(i64),
     /// A number.
     Real(f64),
+    /// A few numbers.
+    Ascending(Ascending),
     /// Another technique's short spelling.
     Technique(&'static str),
     /// Left to gnomon.
@@ -89,6 +98,7 @@ impl fmt::Display for Value {
             }
             Self::Integer(value) => write!(f, "{value}"),
             Self::Real(value) => write!(f, "{value}"),
+            Self::Ascending(numbers) => write!(f, "{numbers}"),
             Self::Technique(spec) => write!(f, "({spec})"),
             Self::Auto => write!(f, "auto"),
         }
@@ -122,11 +132,17 @@ impl Param {
                 let spec = Spec::parse(inside).map_err(|error| format!("takes a technique in parentheses: {error}"))?;
                 Ok(Value::Technique(interned(spec.short())))
             }
-            Kind::Real { auto: true, .. } if typed == "auto" => Ok(Value::Auto),
+            Kind::Real { auto: true, .. } | Kind::Ascending { .. } if typed == "auto" => Ok(Value::Auto),
             Kind::Real { min, max, auto } => {
                 typed.parse().ok().filter(|value| (*min..=*max).contains(value)).map(Value::Real).ok_or_else(|| {
                     let or_auto = if *auto { " or auto" } else { "" };
                     format!("takes a number from {} to {}{or_auto}, not '{typed}'", spelled(*min), spelled(*max))
+                })
+            }
+            Kind::Ascending { min, max } => {
+                Ascending::parse(typed, *min, *max).map(Value::Ascending).ok_or_else(|| {
+                    let (most, min, max) = (Ascending::MOST, spelled(*min), spelled(*max));
+                    format!("takes up to {most} ascending numbers from {min} to {max} as in 10/20/50, or auto, not '{typed}'")
                 })
             }
         }
@@ -141,6 +157,9 @@ impl Param {
             Kind::Integer { min, max } => format!("{min}..{max}"),
             Kind::Real { min, max, auto } => {
                 format!("{}..{}{}", spelled(*min), spelled(*max), if *auto { " | auto" } else { "" })
+            }
+            Kind::Ascending { min, max } => {
+                format!("a/b/… ascending, {}..{} | auto", spelled(*min), spelled(*max))
             }
         }
     }
@@ -221,6 +240,14 @@ mod tests {
             assert_eq!(spelled(limit), expected);
             assert_eq!(spelled(limit).parse(), Ok(limit));
         }
+    }
+
+    #[test]
+    fn lists_may_be_left_to_gnomon() {
+        let param = Param { kind: Kind::Ascending { min: 1.0, max: 9.0 }, default: Value::Auto, ..filter() };
+        assert_eq!(param.parse("auto"), Ok(Value::Auto));
+        assert_eq!(param.parse("2/3.50").unwrap().to_string(), "2/3.5");
+        assert!(param.parse("3/2").unwrap_err().contains("ascending numbers from 1 to 9"));
     }
 
     #[test]

@@ -45,7 +45,7 @@ pub const PRESETS: [Preset; 31] = [
     short("map-irregular", "irregular", "the light's image sampled where the receivers are"),
     engine(
         "bevy-directional",
-        "map:size=2048,projection=cascaded,min_distance_m=0.1,first_far_m=10,max_distance_m=150,lambda=1,filter=pcf-bilinear3,bias=none,bias_depth_m=0.02,bias_normal_texels=1.8,near_mode=depth-clamp",
+        "map:size=2048,projection=cascaded,min_distance_m=0.1,first_far_m=10,max_distance_m=150,lambda=1,overlap_ratio=0.2,filter=pcf-bilinear3,bias=none,bias_depth_m=0.02,bias_normal_texels=1.8,near_mode=depth-clamp",
         "Bevy's directional light",
     ),
     engine(
@@ -60,7 +60,7 @@ pub const PRESETS: [Preset; 31] = [
     ),
     engine(
         "godot-directional",
-        "map:size=2048,projection=cascaded,first_far_m=10,max_distance_m=100,lambda=1,filter=pcf-poisson16,bias=none,bias_depth_m=0.1,bias_normal_texels=2,near_mode=vertex-clamp,near_margin_m=20",
+        "map:size=2048,projection=cascaded,min_distance_m=0.05,splits_m=10.045/20.04/50.025,max_distance_m=100,filter=pcf-poisson16,bias=none,bias_depth_m=0.1,bias_normal_texels=2,near_mode=vertex-clamp,near_margin_m=20",
         "Godot's DirectionalLight3D",
     ),
     engine(

@@ -1,7 +1,7 @@
 //! Technique specifications: `family:axis=value,axis=value` as typed, and canonically with every parameter spelled out.
 
 use super::preset::{PRESETS, expanded};
-use super::{Technique, registry};
+use super::{Ascending, Technique, registry};
 use crate::suggest::hint;
 use crate::technique::param::{Param, Value};
 use std::fmt;
@@ -177,6 +177,16 @@ impl Spec {
             Value::Real(value) => Some(value),
             Value::Auto => None,
             other => unreachable!("{name}={other} is not declared as a number"),
+        }
+    }
+
+    /// Declared ascending numbers; `None` for `auto`.
+    #[must_use]
+    pub fn ascending_or_auto(&self, name: &str) -> Option<Ascending> {
+        match self.value(name) {
+            Value::Ascending(numbers) => Some(numbers),
+            Value::Auto => None,
+            other => unreachable!("{name}={other} is not declared as ascending numbers"),
         }
     }
 

@@ -46,6 +46,12 @@ fn sphere(samples: u32) -> LightKind {
     LightKind::Sphere { position: Vec3::Y * LAMP_HEIGHT as f32, aim: Vec3::ZERO, radius_m: 0.5 * SIDE as f32, samples }
 }
 
+/// As wide as the lamps seen from below.
+fn sun(samples: u32) -> LightKind {
+    let angular_radius_rad = (0.5 * SIDE / LAMP_HEIGHT).atan();
+    LightKind::Sun { towards_light: Vec3::Y, angular_radius_rad, samples }
+}
+
 /// A row of receivers across the penumbra.
 fn receivers(tilt: f64) -> Receivers {
     let at = |i: u32| 0.5 * (2.0 * f64::from(i) / f64::from(RECEIVERS - 1) - 1.0) + 1e-4;
@@ -87,6 +93,12 @@ fn disc_share(tilt: f64, x: f64) -> f64 {
     ((-t).acos() + t * (1.0 - t * t).sqrt()) / PI
 }
 
+/// The visible share of the sun's disc of tangents: the edge is seen at −x over its height.
+fn sun_share(_tilt: f64, x: f64) -> f64 {
+    let t = (-x / EDGE_HEIGHT / (0.5 * SIDE / LAMP_HEIGHT)).clamp(-1.0, 1.0);
+    ((-t).acos() + t * (1.0 - t * t).sqrt()) / PI
+}
+
 /// The largest error of the truth over a penumbra.
 fn worst(tilt: f64, kind: LightKind, share: fn(f64, f64) -> f64) -> f64 {
     let (scene, row) = (scene_with_edge(tilt, kind), receivers(tilt));
@@ -116,7 +128,11 @@ fn any_other_edge_hides_its_share_within_half_a_row_of_samples() {
         let bound = 0.5 / f64::from(samples).sqrt() + ROUNDING;
         for tilt_deg in [0.0_f64, 10.0, 26.57, 45.0, 70.0] {
             let tilt = tilt_deg.to_radians();
-            let errors = [worst(tilt, rectangle(samples), square_share), worst(tilt, sphere(samples), disc_share)];
+            let errors = [
+                worst(tilt, rectangle(samples), square_share),
+                worst(tilt, sphere(samples), disc_share),
+                worst(tilt, sun(samples), sun_share),
+            ];
             assert!(errors.iter().all(|error| *error <= bound), "{samples} samples, {tilt_deg}: {errors:?}");
         }
     }
@@ -138,6 +154,14 @@ fn a_light_moved_by_a_centimetre_is_noticed() {
     let LightKind::Rectangle { position, aim, half_width, half_height, samples } = rectangle(256) else { panic!() };
     let moved = LightKind::Rectangle { position: position + Vec3::X * 0.01, aim, half_width, half_height, samples };
     assert!(worst(0.0, moved, square_share) > 1.0 / 256.0 + ROUNDING);
+}
+
+#[test]
+fn a_sun_turned_by_half_its_radius_is_noticed() {
+    let LightKind::Sun { angular_radius_rad, samples, .. } = sun(256) else { panic!() };
+    let towards_light = Vec3::new(0.5 * angular_radius_rad as f32, 1.0, 0.0).normalize();
+    let turned = LightKind::Sun { towards_light, angular_radius_rad, samples };
+    assert!(worst(0.0, turned, sun_share) > 4.0 * (0.5 / 256.0_f64.sqrt()));
 }
 
 #[test]

@@ -16,6 +16,11 @@ fn value() -> impl Strategy<Value = String> {
         any::<f64>().prop_map(|number| number.to_string()),
         (0.0..2.0_f64).prop_map(|number| number.to_string()),
         (1..64_u32).prop_map(|number| format!("pcf-box{number}")),
+        prop::collection::vec(0.0..9.0_f64, 1..4).prop_map(|list| list
+            .iter()
+            .map(f64::to_string)
+            .collect::<Vec<_>>()
+            .join("/")),
         prop::sample::select(vec!["auto", "none", "slope", "nearest", "manual", "", "-0", "pcf-box", "depth16unorm"])
             .prop_map(str::to_owned),
     ]
@@ -47,7 +52,7 @@ proptest! {
     }
 
     #[test]
-    fn text_of_the_right_characters_is_read_or_refused(typed in "map[:,=()a-z0-9.+-]{0,40}") {
+    fn text_of_the_right_characters_is_read_or_refused(typed in "map[:,=()/a-z0-9.+-]{0,40}") {
         assert_canonical(&typed);
     }
 

@@ -98,6 +98,14 @@ samples = 7
 kind = "sphere"
 position = [0, 5, 0]
 radius = 0.25
+[[light]]
+kind = "sun"
+direction = [0, -2, 0]
+angular_diameter_deg = 10
+samples = 9
+[[light]]
+kind = "sun"
+direction = [1, -1, 0]
 "#;
     let scene = load_texts(&format!("{SCENE}{more}"), MODEL).unwrap();
     for (index, forward) in [(1, DVec3::NEG_Y), (2, DVec3::NEG_X)] {
@@ -109,6 +117,10 @@ radius = 0.25
     assert_eq!((half_height, samples), (Vec3::Y * 0.5, 7), "a rectangle that faces sideways stands upright");
     let LightKind::Sphere { radius_m, samples, .. } = scene.lights[3].kind else { panic!() };
     assert_eq!((radius_m, samples), (0.25, 64));
+    let LightKind::Sun { towards_light, angular_radius_rad, samples } = scene.lights[4].kind else { panic!() };
+    assert_eq!((towards_light, angular_radius_rad, samples), (Vec3::Y, 5.0_f64.to_radians(), 9));
+    let LightKind::Sun { angular_radius_rad, .. } = scene.lights[5].kind else { panic!() };
+    assert_eq!((angular_radius_rad, &*scene.lights[5].name), (0.2665_f64.to_radians(), "sun-2"), "as the true sun's");
 }
 
 #[test]

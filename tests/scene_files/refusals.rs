@@ -95,6 +95,13 @@ fn values_out_of_range_name_line_and_range() {
             "takes position, target, range, radius",
         ),
         ("\"point\"", "\"sphere\"\nradius = 1\nsamples = 0", "scene.toml:12: light[0].samples = 0", "1 to 4096"),
+        ("\"point\"", "\"sun\"", "scene.toml:11: light[0].position", "takes direction, angular_diameter_deg, samples"),
+        (
+            "\"point\"\nposition = [2, 5, 1]",
+            "\"sun\"\ndirection = [0, -1, 0]\nangular_diameter_deg = 180",
+            "scene.toml:12: light[0].angular_diameter_deg = 180",
+            "above 0 and below 180",
+        ),
         ("\"point\"", "\"directional\"", "scene.toml:11: light[0].position", "takes direction: remove it"),
         ("\"point\"", "\"point\"\ncone_deg = 10", "scene.toml:11: light[0].cone_deg", "means nothing for a point"),
         ("\"point\"", "\"spot\"\ncone_deg = 180", "scene.toml:11: light[0].cone_deg = 180", "below 180"),

@@ -18,7 +18,26 @@ pub(crate) fn half_plane(tilt_deg: f64, side: f64, gap: f64) -> Scene {
     half_plane_of_size(tilt_deg, side, gap, [128, 96])
 }
 
-/// The same in a picture of some pixels.
+/// A half plane `gap` over a floor, beyond x = 0, under a sun that stands at some elevation over −x. The camera looks under
+/// it, at where its shadow ends.
+pub(crate) fn half_plane_under_sun(elevation_deg: f64, diameter_deg: f64, gap: f64) -> Scene {
+    let (sine, cosine) = elevation_deg.to_radians().sin_cos();
+    let middle = gap * cosine / sine;
+    let plate = format!("v 0 {gap} -30\nv 0 {gap} 30\nv 30 {gap} 30\nv 30 {gap} -30\n");
+    let model = format!("o Floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\no Plate\n{plate}f 5 6 7 8\n");
+    let scene = format!(
+        "about = \"a half plane under a sun\"\nsize = [128, 96]\n\
+         [camera]\neye = [{}, {}, 0.02]\ntarget = [{middle}, 0, 0.01]\nfov_y_deg = 40\n\
+         [[mesh]]\nfile = \"model.obj\"\n\
+         [[light]]\nname = \"sun\"\nkind = \"sun\"\ndirection = [{cosine}, -{sine}, 0]\n\
+         angular_diameter_deg = {diameter_deg}\nsamples = 256\n",
+        middle - 1.5,
+        0.9 * gap,
+    );
+    scene_of_texts(&scene, &model)
+}
+
+/// A square lamp's in a picture of some pixels.
 pub(crate) fn half_plane_of_size(tilt_deg: f64, side: f64, gap: f64, [width, height]: [u32; 2]) -> Scene {
     let (across, along) = (DVec2::from_angle(tilt_deg.to_radians()), DVec2::from_angle(tilt_deg.to_radians()).perp());
     let corner = |at: DVec2| format!("v {} {gap} {}\n", at.x, at.y);

@@ -20,7 +20,7 @@ pub(super) fn warnings(scene: &Scene) -> Vec<String> {
             let contact = touched(scene, position.as_dvec3(), &in_plane).or_else(|| aligned(scene, &in_plane))?;
             Some(format!("light `{}` {contact}", light.name))
         }
-        LightKind::Directional { .. } => None,
+        LightKind::Directional { .. } | LightKind::Sun { .. } => None,
     });
     eye.into_iter().chain(lights).collect()
 }

@@ -5,7 +5,7 @@ use super::{
     check::Entry,
     transform::{Frame, MAX_COORDINATE_M, rounded, unit},
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::collections::HashSet;
 
 const DEFAULT_INTENSITY: [f64; 3] = [1.0; 3];
@@ -16,6 +16,8 @@ const DEFAULT_INNER_SHARE: f64 = 0.75;
 const DEFAULT_WARN_POWER: f64 = 1.0;
 /// Smaller sides are zero in f32 arithmetic; a light that small is a point.
 const MIN_SIZE_M: f64 = 1e-30;
+/// The sun's mean one, as seen from the earth.
+const DEFAULT_ANGULAR_DIAMETER_DEG: f64 = 0.533;
 const DEFAULT_SAMPLES: u32 = 64;
 /// More would take minutes a picture and say no more.
 const MAX_SAMPLES: u32 = 4096;
@@ -29,14 +31,16 @@ enum Kind {
     Spot,
     Rectangle,
     Sphere,
+    Sun,
 }
 
-const KINDS: [(&str, Kind); 5] = [
+const KINDS: [(&str, Kind); 6] = [
     ("point", Kind::Point),
     ("directional", Kind::Directional),
     ("spot", Kind::Spot),
     ("rectangle", Kind::Rectangle),
     ("sphere", Kind::Sphere),
+    ("sun", Kind::Sun),
 ];
 
 #[derive(Clone, Copy, Default, PartialEq)]
@@ -61,6 +65,7 @@ impl Kind {
             }
             Self::Rectangle => &["position", "target", "range", "width", "height", "samples"],
             Self::Sphere => &["position", "target", "range", "radius", "samples"],
+            Self::Sun => &["direction", "angular_diameter_deg", "samples"],
         }
     }
 }
@@ -121,10 +126,8 @@ impl Builder<'_> {
         self.refuse_foreign_keys(kind)?;
         let kind = match kind {
             Kind::Point => self.point()?,
-            Kind::Directional => {
-                let travel = self.entry.direction("direction", self.required("direction", self.light.direction)?)?;
-                LightKind::Directional { towards_light: rounded(-travel) }
-            }
+            Kind::Directional => LightKind::Directional { towards_light: self.towards()? },
+            Kind::Sun => self.sun()?,
             Kind::Spot => self.spot()?,
             Kind::Rectangle => self.rectangle()?,
             Kind::Sphere => self.sphere()?,
@@ -156,6 +159,7 @@ impl Builder<'_> {
             ("width", light.width.is_some()),
             ("height", light.height.is_some()),
             ("radius", light.radius.is_some()),
+            ("angular_diameter_deg", light.angular_diameter_deg.is_some()),
             ("samples", light.samples.is_some()),
         ];
         let foreign = given.iter().find(|(key, is_given)| *is_given && !kind.keys().contains(key));
@@ -230,6 +234,23 @@ impl Builder<'_> {
             radius_m: self.length("radius", self.light.radius)? as f32,
             samples: self.samples()?,
         })
+    }
+
+    fn sun(&self) -> Result<LightKind, SceneError> {
+        let diameter_deg = self.light.angular_diameter_deg.unwrap_or(DEFAULT_ANGULAR_DIAMETER_DEG);
+        let range = "above 0 and below 180 degrees";
+        let diameter_deg = self.entry.number("angular_diameter_deg", diameter_deg, |v| v > 0.0 && v < 180.0, range)?;
+        Ok(LightKind::Sun {
+            towards_light: self.towards()?,
+            angular_radius_rad: 0.5 * diameter_deg.to_radians(),
+            samples: self.samples()?,
+        })
+    }
+
+    /// Against the way that the light travels.
+    fn towards(&self) -> Result<Vec3, SceneError> {
+        let travel = self.entry.direction("direction", self.required("direction", self.light.direction)?)?;
+        Ok(rounded(-travel))
     }
 
     /// A length that the light cannot be without, in metres of the rebased world.

@@ -135,7 +135,7 @@ impl LightUniform {
         /// More than any angle.
         const WITHOUT_CONE: f32 = 4.0;
         let (distance_law, attenuation) = match (light.kind, mode) {
-            (LightKind::Directional { .. }, _) => (2, [0.0; 3]),
+            (LightKind::Directional { .. } | LightKind::Sun { .. }, _) => (2, [0.0; 3]),
             (_, LightingMode::Physical) => (0, [0.0; 3]),
             (LightKind::Point { attenuation, .. } | LightKind::Spot { attenuation, .. }, _) => (1, attenuation),
             (LightKind::Rectangle { .. } | LightKind::Sphere { .. }, _) => (2, [0.0; 3]),

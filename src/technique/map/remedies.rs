@@ -32,6 +32,9 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
             larger(),
             set("bias", "none"),
         ],
+        Cause::PerspectiveAliasing if spec.choice("projection").0 == "single" => {
+            vec![set("projection", "light-space-perspective"), larger(), set("fit", "receivers")]
+        }
         Cause::EdgeAliasing | Cause::PerspectiveAliasing | Cause::ProjectiveAliasing => {
             vec![larger(), set("fit", "receivers")]
         }

@@ -42,7 +42,7 @@ impl Technique for Soft {
     }
     fn supports(&self, spec: &Spec, scene: &Scene, light: &Light, gpu: &Gpu) -> Result<(), Unsupported> {
         if !light.is_area() {
-            return Err(Unsupported::Light { kind: light.kind_name(), handled: "rectangle and sphere lights" });
+            return Err(Unsupported::Light { kind: light.kind_name(), handled: "rectangle, sphere and sun lights" });
         }
         let inner = spec.nested("inner");
         inner.technique().supports(&inner, scene, &points::at_centre(light), gpu)

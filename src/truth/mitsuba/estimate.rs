@@ -6,7 +6,7 @@ use super::{Mitsuba, MitsubaError};
 use crate::cast::Casters;
 use crate::mask::{Truth, TruthMask};
 use crate::receiver::{Receiver, Receivers};
-use crate::scene::{Light, LightKind};
+use crate::scene::{Light, LightKind, Scene};
 use crate::truth::cross_check::spread;
 use glam::DVec3;
 use serde_json::json;
@@ -49,16 +49,23 @@ impl Mitsuba {
     /// [`MitsubaError`].
     pub fn estimate(
         &mut self,
+        scene: &Scene,
         casters: &Casters,
         light: &Light,
         receivers: &Receivers,
         truth: &TruthMask,
     ) -> Result<Option<Estimate>, MitsubaError> {
-        let (position, radius_m, half_sides, samples) = match light.kind {
-            LightKind::Rectangle { position, half_width, half_height, samples, .. } => {
-                (position, 0.0, vec![half_width, half_height], samples)
+        let centre = light.homogeneous().truncate();
+        let (centre, radius_m, half_sides, samples) = match light.kind {
+            LightKind::Rectangle { half_width, half_height, samples, .. } => {
+                (centre, 0.0, vec![half_width, half_height], samples)
             }
-            LightKind::Sphere { position, radius_m, samples, .. } => (position, radius_m, Vec::new(), samples),
+            LightKind::Sphere { radius_m, samples, .. } => (centre, radius_m.into(), Vec::new(), samples),
+            LightKind::Sun { angular_radius_rad, samples, .. } => {
+                // Beyond all geometry, from wherever it is seen.
+                let far_m = 4.0 * scene.bounds().radius();
+                (centre * far_m, angular_radius_rad.tan() * far_m, Vec::new(), samples)
+            }
             LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => return Ok(None),
         };
         let known: Vec<(u32, Receiver, f64)> = (0..)
@@ -73,8 +80,8 @@ impl Mitsuba {
         let discrepancy = discrepancy(samples as usize);
         let vectors = |of: fn(&Receiver) -> DVec3| known.iter().flat_map(move |(_, r, _)| of(r).to_array());
         let about = json!({
-            "task": "estimate", "centre": position.as_dvec3().to_array(), "radius_m": f64::from(radius_m),
-            "draws": DRAWS, "seed": 1, "discrepancy": discrepancy, "alpha": ALPHA,
+            "task": "estimate", "centre": centre.to_array(), "is_from_receiver": light.homogeneous().w == 0.0,
+            "radius_m": radius_m, "draws": DRAWS, "seed": 1, "discrepancy": discrepancy, "alpha": ALPHA,
         });
         let job = Writer::new(about)
             .f64s("half_sides", half_sides.iter().flat_map(|half| half.as_dvec3().to_array()), &[3])

@@ -47,7 +47,7 @@ impl Mitsuba {
         });
         let draws = if light.is_area() { DRAWS } else { 1 };
         let about = json!({
-            "task": "render", "unit_m": self.unit_m, "view": view, "light": described(light)?, "draws": draws, "seed": 1,
+            "task": "render", "unit_m": self.unit_m, "view": view, "light": described(scene, light)?, "draws": draws, "seed": 1,
         });
         let corners = scene.triangles.iter().flatten().flat_map(|v| scene.positions[*v as usize].to_array());
         let job = Writer::new(about)
@@ -95,8 +95,11 @@ fn vector(of: Vec3) -> [f64; 3] {
     of.as_dvec3().to_array()
 }
 
+/// How far a sun stands from the scene, radii of the scene: directions to it differ by no more than that.
+const SUN_RADII: f64 = 1e5;
+
 /// A light as the job tells it; `oracle/gnomon_oracle/render.py` makes Mitsuba's of it.
-fn described(light: &Light) -> Result<Value, MitsubaError> {
+fn described(scene: &Scene, light: &Light) -> Result<Value, MitsubaError> {
     let mut described = match light.kind {
         LightKind::Point { position, .. } => json!({"position": vector(position)}),
         LightKind::Directional { towards_light } => json!({"direction": vector(-towards_light)}),
@@ -118,6 +121,15 @@ fn described(light: &Light) -> Result<Value, MitsubaError> {
         }),
         LightKind::Sphere { position, radius_m, .. } => {
             json!({"position": vector(position), "radius_m": f64::from(radius_m)})
+        }
+        LightKind::Sun { towards_light, angular_radius_rad, .. } => {
+            let bounds = scene.bounds();
+            let position = bounds.centre() + towards_light.as_dvec3() * (SUN_RADII * bounds.radius());
+            let radius_m = angular_radius_rad.tan() * SUN_RADII * bounds.radius();
+            json!({
+                "position": position.to_array(), "radius_m": radius_m, "direction": vector(-towards_light),
+                "sine": angular_radius_rad.sin(),
+            })
         }
     };
     described["kind"] = json!(light.kind_name());

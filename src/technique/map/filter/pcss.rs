@@ -94,6 +94,9 @@ impl Filter for Pcss {
         let halves = match light.kind {
             LightKind::Rectangle { half_width, half_height, .. } => [half_width.extend(0.0), half_height.extend(0.0)],
             LightKind::Sphere { radius_m, .. } => [Vec4::new(radius_m, 0.0, 0.0, 1.0), Vec4::ZERO],
+            LightKind::Sun { angular_radius_rad, .. } => {
+                [Vec4::new(angular_radius_rad.tan() as f32, 0.0, 0.0, 1.0), Vec4::ZERO]
+            }
             LightKind::Point { .. } | LightKind::Directional { .. } | LightKind::Spot { .. } => [Vec4::ZERO; 2],
         };
         let places = if halves[0].w == 1.0 { disc } else { square };

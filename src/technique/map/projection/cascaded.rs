@@ -2,10 +2,10 @@
 //!
 //! F. Zhang, H. Sun, L. Xu, L. K. Lun, "Parallel-Split Shadow Maps for Large-scale Virtual Environments", 2006; W. Engel,
 //! "Cascaded Shadow Maps", 2006. Assumes a light infinitely far away. Known failures: steps of resolution at the splits
-//! (`blend_texels` hides them); a tight fit crawls when the camera moves, a stable one wastes texels around its slice.
+//! (`overlap_ratio` and `blend_texels` hide them); a tight fit crawls when the camera moves, a stable one wastes texels around its slice.
 
 use super::fit::{LEAST_WIDTH, Reach, look};
-use super::{LightFrustum, Projection, Shape, Shares, View, Window, single};
+use super::{Knobs, LightFrustum, Projection, Shape, Shares, View, Window, single};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::scene::{Light, LightKind, Scene};
 use crate::technique::Unsupported;
@@ -43,7 +43,15 @@ impl Projection for Cascaded {
         true
     }
 
-    fn supports(&self, _: &Scene, light: &Light, _: &Settings) -> Result<(), Unsupported> {
+    fn supports(&self, _: &Scene, light: &Light, settings: &Settings) -> Result<(), Unsupported> {
+        let Knobs { cascades, splits_m, .. } = settings.knobs;
+        if let Some(splits_m) = splits_m
+            && splits_m.as_slice().len() as u32 + 1 != cascades
+        {
+            let made = splits_m.as_slice().len() + 1;
+            let why = format!("splits_m={splits_m} makes {made} cascades, but cascades={cascades}");
+            return Err(Unsupported::Combination { why });
+        }
         direction(light).map(|_| ())
     }
 
@@ -66,10 +74,12 @@ impl Projection for Cascaded {
         let near_m = knobs.min_distance_m.unwrap_or(nearest_m).max(scene.camera.near_m);
         let farthest_m = distances.fold(near_m, f64::max);
         let far_m = knobs.max_distance_m.unwrap_or(farthest_m).max(near_m * (1.0 + LEAST_WIDTH));
-        let ends = ends(knobs.cascades, knobs.lambda, near_m, knobs.first_far_m, far_m);
+        let ends = ends(knobs, near_m, far_m);
         let mut views: Vec<View> = Vec::new();
         for (i, ends) in ends.windows(2).enumerate() {
-            let slice = Slice { from_m: ends[0], to_m: ends[1] };
+            let (from_m, to_m) = (ends[0], ends[1]);
+            let band_m = views.last().map_or(0.0, |before| band_m(knobs, before, from_m));
+            let slice = Slice { from_m: (from_m - band_m).max(scene.camera.near_m), to_m };
             let frustum = if knobs.is_stable {
                 around_sphere(scene, light, settings, travel, slice)?
             } else {
@@ -78,9 +88,8 @@ impl Projection for Cascaded {
                 let fit = Fit { around: Around::Receivers, ..settings.fit };
                 single::frustum(scene, light, &Settings { fit, ..*settings }, &receivers)?
             };
-            let view = frustum.view(&format!("cascade {i} ({:.3} m to {:.3} m)", slice.from_m, slice.to_m));
-            let band_m = views.last().map_or(0.0, |before| knobs.blend_texels * texel_m(before));
-            let starts = forward.extend(-forward.dot(eye) - slice.from_m);
+            let view = frustum.view(&format!("cascade {i} ({from_m:.3} m to {to_m:.3} m)"));
+            let starts = forward.extend(-forward.dot(eye) - from_m);
             views.push(View {
                 selector: if knobs.selects_by_projection { glam::Vec4::ZERO } else { starts.as_vec4() },
                 blend_per_m: if band_m > 0.0 { (1.0 / band_m) as f32 } else { 0.0 },
@@ -134,8 +143,10 @@ impl Projection for Cascaded {
 
 fn direction(light: &Light) -> Result<DVec3, Unsupported> {
     match light.kind {
-        LightKind::Directional { towards_light } => Ok(-towards_light.as_dvec3().normalize()),
-        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional lights" }),
+        LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
+            Ok(-towards_light.as_dvec3().normalize())
+        }
+        _ => Err(Unsupported::Light { kind: light.kind_name(), handled: "directional and sun lights" }),
     }
 }
 
@@ -149,11 +160,24 @@ fn texel_m(view: &View) -> f64 {
     view.site(DVec3::ZERO).texel_m().max_element()
 }
 
+/// How far before a split, at that distance from the eye, the view beyond it is blended in; what selects by projection has
+/// no splits.
+fn band_m(knobs: &Knobs, before: &View, split_m: f64) -> f64 {
+    let band_m = (knobs.blend_texels * texel_m(before)).max(knobs.overlap_ratio * split_m);
+    if knobs.selects_by_projection { 0.0 } else { band_m }
+}
+
 /// Where slices begin and end; what lies beyond a typed end of the first one is split among the others.
-fn ends(count: u32, lambda: f64, near_m: f64, first_far_m: Option<f64>, far_m: f64) -> Vec<f64> {
-    match first_far_m.filter(|first| count > 1 && (near_m..far_m).contains(first)) {
-        Some(first) => std::iter::once(near_m).chain(splits(count - 1, lambda, first, far_m)).collect(),
-        None => splits(count, lambda, near_m, far_m),
+fn ends(knobs: &Knobs, near_m: f64, far_m: f64) -> Vec<f64> {
+    let Knobs { cascades, lambda, first_far_m, splits_m, .. } = *knobs;
+    if let Some(splits_m) = splits_m {
+        // Cascades before the nearest receiver, or beyond the farthest, are empty.
+        let within = splits_m.as_slice().iter().map(|split| split.clamp(near_m, far_m));
+        return std::iter::once(near_m).chain(within).chain([far_m]).collect();
+    }
+    match first_far_m.filter(|first| cascades > 1 && (near_m..far_m).contains(first)) {
+        Some(first) => std::iter::once(near_m).chain(splits(cascades - 1, lambda, first, far_m)).collect(),
+        None => splits(cascades, lambda, near_m, far_m),
     }
 }
 
@@ -207,6 +231,7 @@ fn around_sphere(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::Ascending;
 
     #[test]
     fn splits_are_those_of_the_formula() {
@@ -221,11 +246,18 @@ mod tests {
 
     #[test]
     fn a_typed_end_of_the_first_leaves_the_rest_to_the_others() {
-        let found = ends(4, 1.0, 0.1, Some(10.0), 150.0);
+        let found = ends(&Knobs { lambda: 1.0, first_far_m: Some(10.0), ..Knobs::default() }, 0.1, 150.0);
         let expected = [0.1, 10.0, 24.66, 60.82, 150.0];
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 5e-4 * b), "{found:?}");
-        let beyond = ends(4, 0.5, 0.1, Some(200.0), 100.0);
+        let beyond = ends(&Knobs { first_far_m: Some(200.0), ..Knobs::default() }, 0.1, 100.0);
         assert_eq!(beyond, splits(4, 0.5, 0.1, 100.0), "beyond the last end it says nothing");
+    }
+
+    #[test]
+    fn typed_splits_are_the_splits() {
+        let typed = |splits: &str| Knobs { splits_m: Ascending::parse(splits, 0.0, 1e3), ..Knobs::default() };
+        assert_eq!(ends(&typed("10/20/50"), 0.1, 100.0), [0.1, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(ends(&typed("10/20/50"), 15.0, 30.0), [15.0, 15.0, 20.0, 30.0, 30.0], "two are empty");
     }
 
     #[test]

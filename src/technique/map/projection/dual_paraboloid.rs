@@ -155,7 +155,7 @@ fn axis(light: &Light, settings: &Settings, position: DVec3) -> DVec3 {
         LightKind::Point { aim, .. } | LightKind::Rectangle { aim, .. } | LightKind::Sphere { aim, .. } => {
             Some(aim.as_dvec3() - position)
         }
-        LightKind::Directional { .. } => None,
+        LightKind::Directional { .. } | LightKind::Sun { .. } => None,
     };
     let aim = aim.filter(|_| !settings.knobs.looks_down).and_then(DVec3::try_normalize).unwrap_or(DVec3::NEG_Y);
     // A texel at the middle of the disc spans four over the map's size.

@@ -1,7 +1,7 @@
 //! The parameters that only some projections read, declared and read in one place.
 
-use crate::technique::Spec;
 use crate::technique::param::{Choice, Kind, Param, Value};
+use crate::technique::{Ascending, Spec};
 
 /// What the projections' own parameters are set to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Knobs {
     pub min_distance_m: Option<f64>,
     /// `cascaded`: end of the first one, metres before the eye; `None`: by the formula.
     pub first_far_m: Option<f64>,
+    /// `cascaded`: ends of all but the last, metres before the eye; `None`: by the formula.
+    pub splits_m: Option<Ascending>,
     /// `cascaded`: end of the last one, metres before the eye; `None`: the farthest receiver.
     pub max_distance_m: Option<f64>,
     /// `cascaded`: whether each encloses its slice in a sphere and keeps to the texel grid, so that it is stable.
@@ -22,6 +24,8 @@ pub struct Knobs {
     pub selects_by_projection: bool,
     /// `cascaded`: width of the band before a split in which two are blended, texels.
     pub blend_texels: f64,
+    /// `cascaded`: the same as a share of the split's distance from the eye; the wider band counts.
+    pub overlap_ratio: f64,
     /// `perspective`: how far the virtual eye stands behind the eye, metres; `None`: as far as needed.
     pub virtual_back_m: Option<f64>,
     /// `trapezoidal`: share of the trapezoid's height that is in focus.
@@ -55,10 +59,12 @@ impl Default for Knobs {
             lambda: 0.5,
             min_distance_m: None,
             first_far_m: None,
+            splits_m: None,
             max_distance_m: None,
             is_stable: true,
             selects_by_projection: false,
             blend_texels: 0.0,
+            overlap_ratio: 0.0,
             virtual_back_m: None,
             focus_fraction: 0.3,
             focus_at: -0.6,
@@ -84,10 +90,12 @@ impl Knobs {
             lambda: spec.real("lambda"),
             min_distance_m: spec.real_or_auto("min_distance_m"),
             first_far_m: spec.real_or_auto("first_far_m"),
+            splits_m: spec.ascending_or_auto("splits_m"),
             max_distance_m: spec.real_or_auto("max_distance_m"),
             is_stable: spec.choice("cascade_fit").0 == "sphere",
             selects_by_projection: spec.choice("selection").0 == "by-projection",
             blend_texels: spec.real("blend_texels"),
+            overlap_ratio: spec.real("overlap_ratio"),
             virtual_back_m: spec.real_or_auto("virtual_back_m"),
             focus_fraction: spec.real("focus_fraction"),
             focus_at: spec.real("focus_at"),
@@ -136,6 +144,13 @@ pub fn params() -> Vec<Param> {
             "cascaded: where the first one ends, the others being split from there; auto: by lambda, as they are",
         ),
         param(
+            "splits_m",
+            "m",
+            Kind::Ascending { min: 1e-12, max: MAX_M },
+            Value::Auto,
+            "cascaded: where all but the last one end, whatever lambda and first_far_m say; auto: by these",
+        ),
+        param(
             "max_distance_m",
             "m",
             auto(1e-12, MAX_M),
@@ -162,6 +177,13 @@ pub fn params() -> Vec<Param> {
             real(0.0, 64.0),
             Value::Real(0.0),
             "cascaded: band before a split in which two are blended",
+        ),
+        param(
+            "overlap_ratio",
+            "",
+            real(0.0, 0.9),
+            Value::Real(0.0),
+            "cascaded: the same as a share of the split's distance; the wider band counts",
         ),
         param(
             "virtual_back_m",

@@ -84,3 +84,72 @@ impl LightSpace {
         at.truncate() / at.w
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::look;
+    use super::super::{Shape, Window};
+    use super::*;
+    use crate::cast::testing::Random;
+    use crate::scene::Far;
+    use crate::technique::map::settings::DepthMetric;
+    use glam::UVec2;
+
+    /// Coordinates of up to 10 m, divided by no less than 0.1 m.
+    const ROUNDING: f64 = 1e-11;
+
+    fn set_up(random: &mut Random, shape: Shape) -> (LightSpace, DVec3, DVec3) {
+        let (light, travel) = (5.0 * random.in_cube(), random.in_cube().normalize());
+        let frustum = LightFrustum {
+            light_view_from_world: look(light, travel),
+            window: Window::square(1.0),
+            near_m: 0.1,
+            far_m: 10.0,
+            shape,
+            reversed: true,
+            depth_metric: DepthMetric::Projected,
+            texels: UVec2::ONE,
+        };
+        let (eye, target) = (5.0 * random.in_cube(), 5.0 * random.in_cube());
+        let (eye, target) = (eye.as_vec3(), target.as_vec3());
+        let up = (target - eye).any_orthonormal_vector();
+        let camera = Camera { eye, target, up, fov_y_rad: 1.0, near_m: 0.1, far: Far::Infinite };
+        let homogeneous = if shape == Shape::Parallel { (-travel).extend(0.0) } else { light.extend(1.0) };
+        (LightSpace::of(&frustum, homogeneous, &camera, 1e-3).unwrap(), light, travel)
+    }
+
+    #[test]
+    fn light_falls_along_y_alone_and_nothing_is_mirrored() {
+        let mut random = Random(3);
+        for i in 0..2000 {
+            let shape = if i % 2 == 0 { Shape::Parallel } else { Shape::Perspective };
+            let (space, light, travel) = set_up(&mut random, shape);
+            let point = 5.0 * random.in_cube();
+            let nearer = match shape {
+                Shape::Parallel => point - travel,
+                Shape::Perspective if travel.dot(point - light) < 0.5 => continue,
+                Shape::Perspective => point.lerp(light, 0.3),
+            };
+            let (low, high) = (space.place(point), space.place(nearer));
+            assert!((low.x - high.x).abs() < ROUNDING && (low.z - high.z).abs() < ROUNDING, "{low} {high}");
+            assert!(high.y > low.y, "{shape:?}");
+            assert!(space.light_from_world.determinant() > 0.0, "{shape:?}");
+        }
+    }
+
+    /// Across the light, distance along the camera's axis over w changes along −z only, by the sine of the angle.
+    #[test]
+    fn what_is_near_in_the_picture_is_near_along_z() {
+        let mut random = Random(4);
+        for i in 0..2000 {
+            let shape = if i % 2 == 0 { Shape::Parallel } else { Shape::Perspective };
+            let (space, light, travel) = set_up(&mut random, shape);
+            let from = light + travel * (0.5 + random.unit()) + travel.cross(random.in_cube());
+            let to = from + travel.cross(random.in_cube());
+            let nearness = |point: DVec3| space.axis.dot(point - space.eye) / space.homogeneous(point).w;
+            let change = nearness(to) - nearness(from);
+            let along_z = space.place(to).z - space.place(from).z;
+            assert!((change + space.sine * along_z).abs() < ROUNDING, "{shape:?}: {change} {along_z}");
+        }
+    }
+}

@@ -100,7 +100,7 @@ fn view(scene: &Scene, light: &Light, fit: &Fit, visible: &[DVec3]) -> Result<Li
         triangles.flat_map(|triangle| scene.triangle_in_world(triangle)).collect()
     };
     match light.kind {
-        LightKind::Directional { towards_light } => {
+        LightKind::Directional { towards_light } | LightKind::Sun { towards_light, .. } => {
             let bounds = scene.bounds();
             let default_pull_back_m =
                 if fit.around == Around::Manual { MANUAL_PULL_BACK_M } else { bounds.radius().max(f64::MIN_POSITIVE) };
