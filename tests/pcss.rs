@@ -8,7 +8,7 @@ mod support;
 use gnomon::cause::Cause;
 use gnomon::scene::Scene;
 use gnomon::technique::Unsupported;
-use support::penumbra::{LAMP_HEIGHT, SIDE, across_edge, half_plane, half_plane_of_size};
+use support::penumbra::{LAMP_HEIGHT, SIDE, across_edge, half_plane, half_plane_of_size, half_plane_under_sun};
 use support::scenes::{scene_of_texts, shipped};
 use support::shot::Shot;
 
@@ -25,12 +25,36 @@ const HELD_M: f64 = 1.8;
 
 /// Where the light falls from 98 % to 2 % on the floor, stretched to the whole of a linear penumbra, metres.
 fn width_m(scene: &Scene, spec: &str) -> f64 {
-    let shot = Shot::new(scene, "lamp");
+    let shot = Shot::new(scene, &scene.lights[0].name);
     let points = across_edge(&shot, &shot.evaluate(spec).mask, 0.0);
     let points: Vec<_> = points.into_iter().filter(|p| p.0.abs() < HELD_M).collect();
     let first_dimmed = points.iter().filter(|p| p.1 < 0.98).map(|p| p.0).fold(f64::INFINITY, f64::min);
     let last_lit = points.iter().filter(|p| p.1 > 0.02).map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
     (last_lit - first_dimmed) / 0.96
+}
+
+/// Of a sun the width follows from its angular diameter and the distance to the blocker alone; the disc dims slowly at both
+/// ends: from 98 % to 2 % are 0.85 of its width.
+#[test]
+fn a_suns_penumbra_is_as_wide_as_its_angle_makes_it() {
+    let falls_to = |diameter_deg: f64, gap: f64, projection: &str| {
+        let scene = half_plane_under_sun(90.0, diameter_deg, gap);
+        let spec = format!("map:filter=pcss128,{SEARCH},size=4096,fit=receivers,projection={projection}");
+        0.96 * width_m(&scene, &spec)
+    };
+    for projection in ["single", "cascaded,cascades=2", "adaptive"] {
+        for (diameter_deg, gap) in [(4.0, 0.6), (8.0, 0.6), (8.0, 1.2)] {
+            let (width, disc) =
+                (falls_to(diameter_deg, gap, projection), 2.0 * gap * (0.5 * diameter_deg.to_radians()).tan());
+            let within = 0.1 * disc + 2.0 * (TEXEL_M + ROW_M);
+            assert!(
+                (width - 0.85 * disc).abs() < within,
+                "{projection}, {diameter_deg} degrees at {gap}: {width}, not {disc}"
+            );
+        }
+    }
+    let hard = falls_to(0.01, 0.6, "single");
+    assert!(hard < 2.0 * (TEXEL_M + ROW_M), "a small sun's edge is hard: {hard}");
 }
 
 /// PC-2, PC-3, PC-5.

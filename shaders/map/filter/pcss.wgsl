@@ -8,6 +8,7 @@ const PLACES: u32 = 3u;
 struct Cone {
     halves_in_world: mat2x3f,
     widest: f32,
+    is_parallel: bool,
     distance_m: f32,
     near_m: f32,
     metres_per_depth: f32,
@@ -65,24 +66,24 @@ fn blocker(reference: f32, texel: vec2i) -> Found {
 }
 
 fn cone_of(in_map: InMap) -> Cone {
-    if lookup.light.w == 0.0 {
-        return Cone(mat2x3f(), 0.0, 1.0, 1.0, 0.0);
-    }
     let view = views[own.view];
     let around = gradients(view, own.point_in_world, in_map);
     let axis = normalize(view.depth_sign * around.depth);
-    let distance_m = dot(axis, own.point_in_world - lookup.light.xyz);
+    let metres_per_depth = view.depth_sign / length(around.depth);
+    let near_depth = select(1.0, 0.0, view.depth_sign > 0.0);
+    let beyond_near_m = (in_map.depth - near_depth) * metres_per_depth;
+    let is_parallel = lookup.light.w == 0.0;
+    let distance_m = select(dot(axis, own.point_in_world - lookup.light.xyz), beyond_near_m, is_parallel);
     var halves = mat2x3f(across(numbers[HALVES].xyz, axis), across(numbers[HALVES + 1u].xyz, axis));
     if numbers[HALVES].w == 1.0 {
         let radius_m = numbers[HALVES].x;
         halves = mat2x3f(radius_m * normalize(across(around.u, axis)), radius_m * normalize(across(around.v, axis)));
     }
-    let first = distance_m * lookup.texels * vec2f(dot(around.u, halves[0]), dot(around.v, halves[0]));
-    let second = distance_m * lookup.texels * vec2f(dot(around.u, halves[1]), dot(around.v, halves[1]));
-    let metres_per_depth = view.depth_sign / length(around.depth);
-    let near_depth = select(1.0, 0.0, view.depth_sign > 0.0);
-    let near_m = distance_m + (near_depth - in_map.depth) * metres_per_depth;
-    return Cone(halves, 2.0 * max(length(first), length(second)), distance_m, near_m, metres_per_depth);
+    let first = lookup.texels * vec2f(dot(around.u, halves[0]), dot(around.v, halves[0]));
+    let second = lookup.texels * vec2f(dot(around.u, halves[1]), dot(around.v, halves[1]));
+    let near_m = distance_m - beyond_near_m;
+    let widest = 2.0 * max(length(first), length(second));
+    return Cone(halves, widest, is_parallel, distance_m, near_m, metres_per_depth);
 }
 
 fn across(vector: vec3f, axis: vec3f) -> vec3f {
@@ -90,7 +91,7 @@ fn across(vector: vec3f, axis: vec3f) -> vec3f {
 }
 
 fn spread(cone: Cone, blocker_m: f32) -> f32 {
-    return (cone.distance_m - blocker_m) / (cone.distance_m * blocker_m);
+    return (cone.distance_m - blocker_m) / select(blocker_m, 1.0, cone.is_parallel);
 }
 
 fn limited(cone: Cone, spread: f32) -> f32 {
@@ -104,6 +105,6 @@ fn texel(cone: Cone, index: u32, spread: f32) -> vec2i {
     if numbers[HALVES].w == 1.0 {
         place = turned(listed);
     }
-    let beside = own.point_in_world + spread * cone.distance_m * (cone.halves_in_world * place);
+    let beside = own.point_in_world + spread * (cone.halves_in_world * place);
     return vec2i(floor(project(views[own.view], beside).uv * lookup.texels));
 }

@@ -3,7 +3,7 @@
 //!
 //! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane across the axis that depth is
 //! measured along (the map's or, on a paraboloid, the ray's own), and that the light looks at them from there: the kernel
-//! is then the light as the receiver sees it through that plane, with a rectangle's own sides or a sphere's disc. Known failures: blockers at several distances, blockers that the search
+//! is then the light as the receiver sees it through that plane, with a rectangle's own sides or a sphere's or sun's disc. Known failures: blockers at several distances, blockers that the search
 //! misses, and the limits of the widths (`filter-width`). Formulas: docs/map.md#percentage-closer-soft-shadows.
 
 use super::turn::{TURN, shifted, turned};
@@ -74,7 +74,7 @@ impl Filter for Pcss {
         if blockers == 0.0 {
             return;
         }
-        let blocker_m = cone.distance_m + (depth / blockers - asked.placed.depth) * cone.metres_per_depth;
+        let blocker_m = cone.distance_m + (depth / blockers - cone.depth) * cone.metres_per_depth;
         let spread = cone.limited(cone.spread(blocker_m), kernel.max_texels);
         if spread * cone.widest < kernel.min_texels {
             tap(position.floor().as_ivec2(), 1.0);
@@ -86,8 +86,8 @@ impl Filter for Pcss {
         }
     }
 
-    /// The light's half sides (a sphere's radius with a 1 behind it), then the places of the search's taps and those of
-    /// the kernel's: in the unit disc for a sphere, else in the unit square.
+    /// The light's half sides (a sphere's radius, or the tangent of a sun's, with a 1 behind it), then the places of the
+    /// search's taps and those of the kernel's: in the unit square for a rectangle, else in the unit disc.
     fn numbers(&self, kernel: &Kernel, light: &Light) -> Vec<Vec4> {
         let counts =
             [kernel.search_taps as f32, kernel.number as f32, kernel.min_texels as f32, kernel.max_texels as f32];
@@ -110,11 +110,16 @@ impl Filter for Pcss {
 
 /// What a receiver sees of the light, in its view.
 struct Cone {
-    /// The light's half sides, or two radii of the disc that it shows, across the axis that depth is measured along: metres.
+    /// The light's half sides, or two radii of the disc that it shows, across the axis that depth is measured along: metres;
+    /// of a sun, metres for each metre to the blocker.
     halves_in_world: [DVec3; 2],
-    /// How wide the wider of both is in the map, were the receiver's distance 1: texels × metres.
+    /// How wide the wider of both is in the map at the receiver: texels.
     widest: f64,
-    /// Of the receiver along the axis.
+    /// Whether the light is infinitely far away.
+    is_parallel: bool,
+    /// Of the receiver in its view.
+    depth: f64,
+    /// The same along the axis: from the light, or of parallel light from the view's near plane.
     distance_m: f64,
     /// Of the view's near plane.
     near_m: f64,
@@ -124,15 +129,14 @@ struct Cone {
 
 impl Cone {
     fn of(asked: &Asked<'_>) -> Self {
-        if asked.light.w == 0.0 {
-            // Parallel rays come from a light without extent.
-            let (halves_in_world, widest) = ([DVec3::ZERO; 2], 0.0);
-            return Self { halves_in_world, widest, distance_m: 1.0, near_m: 1.0, metres_per_depth: 0.0 };
-        }
         let (view, point) = (asked.view, asked.placed.point_in_world);
-        let Gradients { u, v, depth } = view.site(point).gradients;
+        let site = view.site(point);
+        let Gradients { u, v, depth } = site.gradients;
         let axis = (view.depth_sign * depth).normalize();
-        let distance_m = axis.dot(point - asked.light.truncate());
+        let metres_per_depth = view.depth_sign / depth.length();
+        let beyond_near_m = (site.at.depth - (1.0 - view.cleared())) * metres_per_depth;
+        let is_parallel = asked.light.w == 0.0;
+        let distance_m = if is_parallel { beyond_near_m } else { axis.dot(point - asked.light.truncate()) };
         let across = |vector: DVec3| vector - axis * vector.dot(axis);
         let sides = [asked.numbers[HALVES], asked.numbers[HALVES + 1]];
         let radius_m = f64::from(sides[0].x);
@@ -141,22 +145,22 @@ impl Cone {
         } else {
             sides.map(|side| across(side.truncate().as_dvec3()))
         };
-        let on_map = |half: DVec3| distance_m * view.texels.as_dvec2() * DVec2::new(u.dot(half), v.dot(half));
+        let on_map = |half: DVec3| view.texels.as_dvec2() * DVec2::new(u.dot(half), v.dot(half));
         let [first, second] = halves_in_world.map(|half| on_map(half).length());
-        let metres_per_depth = view.depth_sign / depth.length();
-        let near_depth = 1.0 - view.cleared();
         Self {
             halves_in_world,
             widest: 2.0 * first.max(second),
+            is_parallel,
+            depth: site.at.depth,
             distance_m,
-            near_m: distance_m + (near_depth - asked.placed.depth) * metres_per_depth,
+            near_m: distance_m - beyond_near_m,
             metres_per_depth,
         }
     }
 
-    /// How wide the light is, through a point at a distance before the receiver: 1/metres, a factor of its halves.
+    /// How wide the light is at the receiver, seen through a point before it: a factor of its halves.
     fn spread(&self, blocker_m: f64) -> f64 {
-        (self.distance_m - blocker_m) / (self.distance_m * blocker_m)
+        (self.distance_m - blocker_m) / if self.is_parallel { 1.0 } else { blocker_m }
     }
 
     /// A spread that is no wider than that many texels.
@@ -173,7 +177,7 @@ impl Cone {
             2.0 * shifted(asked.kernel, asked.pixel, listed) - 1.0
         };
         let [first, second] = self.halves_in_world;
-        let beside = asked.placed.point_in_world + spread * self.distance_m * (place.x * first + place.y * second);
+        let beside = asked.placed.point_in_world + spread * (place.x * first + place.y * second);
         (asked.view.project(beside).uv * asked.view.texels.as_dvec2()).floor().as_ivec2()
     }
 }
