@@ -77,7 +77,8 @@ fn at_a_contact_a_coarse_map_needs_a_bias_that_follows_the_plane() {
         verdict.expect("nobody stops it").expect("maps have a bias")
     };
     let coarse = searched("map:size=32");
-    let free = coarse.free_of_both.expect("one that follows the plane, or none at all where there is no second surface");
+    let free =
+        coarse.free_of_both.expect("one that follows the plane, or none at all where there is no second surface");
     assert!(["midpoint", "receiver-plane"].contains(&free.choice("bias").0), "{}", free.short());
     for (spec, own, detached) in &coarse.tried {
         println!("{}: self-shadowing {own}, detached {detached}", spec.short());

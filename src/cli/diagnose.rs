@@ -37,7 +37,7 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
         let diagnoses = diagnose(&mut trials, &spec, &evaluation, terminal)?;
         terminal.finish();
         for diagnosis in &diagnoses {
-            say(&described(subject(&spec), diagnosis, &before));
+            say(&described(subject(&spec), diagnosis, &before, gpu.adapter().is_software));
         }
         let is_bias = |d: &Diagnosis| matches!(d.cause, Cause::Acne | Cause::Curvature | Cause::PeterPanning);
         if diagnoses.iter().any(is_bias) {
@@ -61,7 +61,7 @@ pub(super) fn run(args: &DiagnoseArgs, terminal: &Terminal) -> anyhow::Result<u8
     Ok(exit::OK)
 }
 
-fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome) -> String {
+fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome, is_software: bool) -> String {
     let width = subject.size.x;
     let pixels: Vec<String> = diagnosis.worst.iter().map(|p| format!("{},{}", p % width, p / width)).collect();
     let mut text = format!(
@@ -75,7 +75,7 @@ fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome) -> S
     );
     for (fix, outcome) in &diagnosis.trials {
         let effect = match outcome {
-            Ok(after) => effect(diagnosis.cause, before, after),
+            Ok(after) => effect(diagnosis.cause, before, after, is_software),
             Err(why) => why.clone(),
         };
         text += &format!("  tried {}: {effect}\n", subject.spec.changes_to(fix));
@@ -87,7 +87,7 @@ fn described(subject: Subject<'_>, diagnosis: &Diagnosis, before: &Outcome) -> S
 }
 
 /// "acne 3120 → 0 px, peter-panning 0 → 44 px, wrong 3200 → 124 px, GPU time +2 %".
-fn effect(cause: Cause, before: &Outcome, after: &Outcome) -> String {
+fn effect(cause: Cause, before: &Outcome, after: &Outcome, is_software: bool) -> String {
     let mut parts = vec![format!("{} {} → {} px", cause.name(), before.of_cause(cause), after.of_cause(cause))];
     for other in Cause::ALL.into_iter().filter(|other| *other != cause) {
         let (old, new) = (before.of_cause(other), after.of_cause(other));
@@ -98,7 +98,8 @@ fn effect(cause: Cause, before: &Outcome, after: &Outcome) -> String {
     parts.push(format!("all wrong {} → {} px", before.wrong, after.wrong));
     let growth = |old: f64, new: f64| 100.0 * (new / old - 1.0);
     if let Some(ratio) = after.ms_ratio {
-        parts.push(format!("GPU time {:+.0} %", growth(1.0, ratio)));
+        let mark = if is_software { " (software adapter)" } else { "" };
+        parts.push(format!("GPU time {:+.0} %{mark}", growth(1.0, ratio)));
     }
     parts.push(format!("memory {:+.0} %", growth(before.cost.bytes as f64, after.cost.bytes as f64)));
     parts.join(", ")

@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(code_of(&wrapped(TechniqueError::Interrupted(Interrupted).into())), INTERRUPTED);
         let large = GpuError::TooLarge { what: "x".to_owned(), asked: 2, limit: 1 };
         assert_eq!(code_of(&anyhow::Error::from(large).context("scene 'a'")), USAGE);
-        let missing = GpuError::NoAdapter { why: String::new(), found: String::new() };
+        let missing = GpuError::NoAdapter { why: String::new(), found: String::new(), remedy: String::new() };
         assert_eq!(code_of(&missing.into()), NO_ADAPTER);
         assert_eq!(code_of(&anyhow::anyhow!("anything else")), USAGE);
     }

@@ -14,7 +14,7 @@ use crate::receiver::{Asked, Receiver};
 use crate::scene::{LightKind, Scene, Segment};
 use crate::technique::{Job, Spec, TechniqueError};
 use crate::verdict::wrong_above;
-use crate::watch::{Interrupted, Watch};
+use crate::watch::{Interrupted, Quiet, Watch};
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -74,20 +74,25 @@ pub fn flips(
 ) -> Result<Flips, EvaluateError> {
     let followed = if spec.technique().draws_the_picture(spec) { Followed::Pixels } else { Followed::Points };
     let light = question.light.name.as_str();
-    let frame_of = |scene: &Scene| frame(view.gpu, scene, light, spec, watch);
+    let quiet = Quiet(watch);
+    let frame_of = |scene: &Scene| frame(view.gpu, scene, light, spec, &quiet);
     let moved_camera = |step: f64| with_camera_moved(view.scene, step);
-    let of_camera = along(question, steps, |step| match followed {
-        Followed::Points => followed_frame(view, &moved_camera(step), question, spec, watch),
+    let of_camera = along("moving the camera", question, steps, watch, |step| match followed {
+        Followed::Points => followed_frame(view, &moved_camera(step), question, spec, &quiet),
         Followed::Pixels => frame_of(&moved_camera(step)),
     })?;
-    let of_light = along(question, steps, |step| frame_of(&with_light_turned(view.scene, light, step)))?;
+    let of_light = along("turning the light", question, steps, watch, |step| {
+        frame_of(&with_light_turned(view.scene, light, step))
+    })?;
     Ok(Flips { of_camera, of_light, followed })
 }
 
 /// The flips from each frame to the next, for the steps 0 to `steps`.
 fn along(
+    what: &str,
     question: &Question<'_>,
     steps: u32,
+    watch: &dyn Watch,
     frame: impl Fn(f64) -> Result<Frame, EvaluateError>,
 ) -> Result<Vec<u64>, EvaluateError> {
     let mut counts = Vec::new();
@@ -95,8 +100,10 @@ fn along(
         return Ok(counts);
     }
     let mut before: Option<Frame> = None;
+    watch.start(what, u64::from(steps) + 1);
     for step in 0..=steps {
         let after = frame(step.into())?;
+        watch.advance(1);
         counts.extend(before.map(|before| flipped(&before, &after, wrong_above(question.light))));
         before = Some(after);
     }

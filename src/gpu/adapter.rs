@@ -1,11 +1,14 @@
 //! Which adapter gnomon uses, and what it tells the user about it.
 
-use super::GpuError;
+use super::{GpuError, INSTALL_HINT};
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
 /// Environment variable naming part of the adapter's name, its backend, or its number in `gnomon doctor`'s list.
 pub(super) const ADAPTER_VARIABLE: &str = "GNOMON_ADAPTER";
+
+/// wgpu's own: which graphics interfaces it looks at.
+const BACKENDS_VARIABLE: &str = "WGPU_BACKEND";
 
 /// Features gnomon uses where the adapter has them; everything works without, or says what is missing.
 pub(super) const WANTED_FEATURES: [(Features, &str); 9] = [
@@ -99,19 +102,31 @@ pub(super) fn choose(instance: &Instance, wish: Option<&str>) -> Result<Adapter,
     let mut adapters = all_adapters(instance);
     let names: Vec<String> =
         adapters.iter().map(|a| a.get_info()).map(|i| format!("{} ({})", i.name, i.backend)).collect();
+    // The GL backend lacks depth copies and samples stencil as 0: answers would be wrong.
+    let is_usable = |adapter: &Adapter| adapter.get_info().backend != Backend::Gl;
     let position = match wish {
-        // The GL backend lacks depth copies and samples stencil as 0: only on explicit request.
-        None => adapters.iter().position(|a| a.get_info().backend != Backend::Gl),
+        None => adapters.iter().position(is_usable),
         Some(wish) => wish.parse().ok().filter(|n| *n < adapters.len()).or_else(|| {
             let wish = wish.to_lowercase();
             names.iter().position(|name| name.to_lowercase().contains(&wish))
         }),
     };
-    position.map(|at| adapters.swap_remove(at)).ok_or_else(|| GpuError::NoAdapter {
-        why: match wish {
-            None => "no Vulkan, Metal or DX12 driver answered".to_owned(),
-            Some(wish) => format!("{ADAPTER_VARIABLE}={wish} matches none"),
-        },
-        found: if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+    let chosen = position.filter(|at| is_usable(&adapters[*at])).map(|at| adapters.swap_remove(at));
+    chosen.ok_or_else(|| {
+        let (why, remedy) = match (wish, position) {
+            (None, _) => {
+                let backends = std::env::var(BACKENDS_VARIABLE).map(|typed| format!(" ({BACKENDS_VARIABLE}={typed})"));
+                let why = format!("no Vulkan, Metal or DX12 driver answered{}", backends.unwrap_or_default());
+                (why, format!("install a software Vulkan driver with: {INSTALL_HINT}"))
+            }
+            (Some(wish), Some(_)) => {
+                let why = format!("{ADAPTER_VARIABLE}={wish} is a GL driver, which cannot copy depth or read stencils");
+                (why, format!("choose another, or none: unset {ADAPTER_VARIABLE}"))
+            }
+            (Some(wish), None) => {
+                (format!("{ADAPTER_VARIABLE}={wish} matches none"), "name one of these, or its number".to_owned())
+            }
+        };
+        GpuError::NoAdapter { why, found: if names.is_empty() { "none".to_owned() } else { names.join(", ") }, remedy }
     })
 }

@@ -113,10 +113,16 @@ impl Gpu {
         if !errors.is_empty() {
             self.pipelines.forget();
         }
+        // Whatever is invalid after memory ran out is so because of that.
+        if errors.iter().any(|error| matches!(error, Error::OutOfMemory { .. })) {
+            return Err(GpuError::OutOfMemory { during });
+        }
         match errors.into_iter().next() {
             Some(Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { during }),
             Some(Error::Validation { description, .. } | Error::Internal { description, .. }) => {
-                Err(GpuError::Invalid { during, why: description })
+                // wgpu tells causes line by line.
+                let lines: Vec<&str> = description.split_whitespace().collect();
+                Err(GpuError::Invalid { during, why: lines.join(" ") })
             }
             None => waited.map(|_| result).map_err(|error| GpuError::Lost { during, why: error.to_string() }),
         }

@@ -7,14 +7,14 @@ pub const INSTALL_HINT: &str = "apt-get update && apt-get install -y --no-instal
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter answered, or none matched what the user asked for.
-    #[error(
-        "no usable graphics adapter: {why}\n  found: {found}\n  install a software Vulkan driver with: {INSTALL_HINT}"
-    )]
+    #[error("no usable graphics adapter: {why}\n  found: {found}\n  {remedy}")]
     NoAdapter {
         /// What was looked for.
         why: String,
         /// The adapters that did answer.
         found: String,
+        /// What to do about it.
+        remedy: String,
     },
     /// The adapter refused to open a device.
     #[error("the adapter {adapter} gave no device: {why}")]

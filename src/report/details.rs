@@ -73,7 +73,10 @@ fn biases(views: &[EffectiveBias]) -> Vec<String> {
     let of = |view: &str| if views.len() > 1 { format!("{}: ", printable(view)) } else { String::new() };
     let mut lines: Vec<String> = shown.iter().map(|bias| of(&bias.view) + &bias.told()).collect();
     if shown.len() < views.len() {
-        lines.push(format!("{} more views between these: in report.json", views.len() - shown.len()));
+        lines.push(format!(
+            "{} more views that receivers read, between these: in report.json",
+            views.len() - shown.len()
+        ));
     }
     lines
 }

@@ -155,12 +155,13 @@ fn no_adapter_is_exit_code_3_with_the_command_that_installs_one() {
     let install = "apt-get install -y --no-install-recommends mesa-vulkan-drivers";
     let driverless = [("VK_DRIVER_FILES", "/nonexistent"), ("WGPU_BACKEND", "vulkan")];
     let wish = [("GNOMON_ADAPTER", "nonexistent")];
-    for variables in [&driverless[..], &wish] {
+    for (variables, remedy) in [(&driverless[..], install), (&wish, "name one of these")] {
         for args in [&["check", "scenes/triangle"][..], &["doctor"], &["truth", "scenes/contact", "-o", "no/x.png"]] {
-            gnomon_with(variables, args).returns(3).complains(&["no usable graphics adapter", install]);
+            gnomon_with(variables, args).returns(3).complains(&["no usable graphics adapter", remedy]);
         }
     }
     gnomon_with(&wish, &["doctor"]).complains(&["GNOMON_ADAPTER=nonexistent", "found: "]);
+    gnomon_with(&[("WGPU_BACKEND", "vulcan")], &["doctor"]).returns(3).complains(&["WGPU_BACKEND=vulcan"]);
     assert!(!Path::new(env!("CARGO_MANIFEST_DIR")).join("no").exists());
     // What needs no adapter works without.
     gnomon_with(&driverless, &["list", "techniques"]).returns(0);

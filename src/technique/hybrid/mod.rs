@@ -50,6 +50,10 @@ impl Technique for Hybrid {
                 return Err(Unsupported::Combination { why });
             }
         }
+        if map.integer("size") != own_size_of_maps() {
+            let why = "the hybrid's own size= is that of its map: map=(...) takes none".to_owned();
+            return Err(Unsupported::Combination { why });
+        }
         if map.choice("filter").0 != "nearest" {
             let why = "the texels around a receiver are compared, not filtered: map=(...) takes no filter".to_owned();
             return Err(Unsupported::Combination { why });
@@ -74,7 +78,9 @@ impl Technique for Hybrid {
         };
         let nested = ["map", "volume"].into_iter().flat_map(|name| {
             let inner = spec.nested(name);
-            inner.technique().remedies(&inner, cause).into_iter().map(move |fix| (name, format!("({})", fix.short())))
+            let fixes = inner.technique().remedies(&inner, cause).into_iter();
+            let takes = |fix: &Spec| name != "map" || fix.integer("size") == own_size_of_maps();
+            fixes.filter(takes).map(|fix| (name, format!("({})", fix.short()))).collect::<Vec<_>>()
         });
         let changed = own.into_iter().chain(nested).filter_map(|(key, value)| spec.with(key, &value).ok());
         changed.filter(|changed| changed != spec).collect()
@@ -88,6 +94,18 @@ impl Technique for Hybrid {
         let volume = volume::Settings::of(&spec.nested("volume")).masked();
         Ok(Box::new(prepared::PreparedHybrid::new(&map, volume, job)?))
     }
+}
+
+/// The size of a map that nobody typed.
+fn own_size_of_maps() -> i64 {
+    map::Map
+        .params()
+        .iter()
+        .find_map(|param| match (param.name, param.default) {
+            ("size", Value::Integer(size)) => Some(size),
+            _ => None,
+        })
+        .unwrap_or_default()
 }
 
 /// The map whose answer is neither 0 nor 1 where the texels around a receiver disagree: a box of even width holds the
