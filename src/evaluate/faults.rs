@@ -47,6 +47,11 @@ const FAULTS: &[Fault] = &[
         "map:projection=cascaded,size=64",
     ),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
+    ("map/lookup.wgsl", "normal_in_world), shares.second_weight)", "normal_in_world), 0.5)", BLENDED),
+    ("map/lookup.wgsl", "clamp(at.depth, 0.0, 1.0)", "at.depth", "map:border=clamp-edge,far_m=5"),
+    ("map/lookup.wgsl", "nearest_texel(texel, lookup.texels);", "nearest_texel(texel.yx, lookup.texels);", STRETCHED),
+    ("map/lookup.wgsl", "|| lookup.border == BORDER_CLAMP_EDGE) {", ") {", STRETCHED),
+    ("map/paraboloid.wgsl", "return rounding + bent_m / range_m", "return rounding", PARABOLOID_KERNEL),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
     ("map/second_layer.wgsl", "<= SAME_LAYER", ">= SAME_LAYER", "map:bias=midpoint"),
     ("map/midpoint.wgsl", "0.5 * (", "0.9 * (", "map:bias=midpoint"),
@@ -123,6 +128,9 @@ const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
 const PANCAKED: &str = "map:near_mode=vertex-clamp";
 const PARABOLOID: &str = "map:projection=dual-paraboloid";
+const PARABOLOID_KERNEL: &str = "map:projection=dual-paraboloid,size=64,filter=pcf-box5";
+const BLENDED: &str = "map:projection=cascaded,size=64,blend_texels=8";
+const STRETCHED: &str = "map:border=clamp-edge,fov_deg=20,filter=pcf-box5";
 const PROJECTED: &str = "projective-texture";
 const ZP_PLUS: &str = "volume:count=zp-plus";
 
