@@ -86,7 +86,7 @@ fn a_coarse_map_at_a_contact_has_no_bias_that_clears_both() {
         assert_eq!(measured.of_cause(Cause::PeterPanning), *detached);
     }
     // Control: with finer texels there is one, and whatever bias was typed is not on top of it.
-    let fine = searched("map:size=4096,bias=none,bias_depth_m=0.1,bias_normal_texels=3");
+    let fine = searched("map:size=4096,bias=none,bias_depth_m=0.1,bias_normal_texels=3,bias_depth_texels=9");
     let free = fine.free_of_both.expect("a bias");
     let outcome = Outcome::of(&shot.evaluate_spec(&free));
     assert_eq!(outcome.of_cause(Cause::Acne) + outcome.of_cause(Cause::PeterPanning), 0, "{}", free.short());

@@ -134,11 +134,12 @@ impl<'e> Twin<'e> {
         self.shot.view.casters.all_hits(&ray, None, &mut hits);
         for hit in hits {
             let corners = scene.triangle_in_world(hit.triangle);
-            let Some(drawn) = self.lookup.drawn_depth(0, ray.from.lerp(ray.to, hit.t)) else { continue };
-            let depth = (drawn + self.lookup.hardware_bias(0, corners)).clamp(0.0, 1.0);
+            let point = ray.from.lerp(ray.to, hit.t);
+            let Some(drawn) = self.lookup.drawn_depth(0, point) else { continue };
+            let depth = (drawn + self.lookup.hardware_bias(0, corners, point)).clamp(0.0, 1.0);
             if view.is_nearer(depth, nearest.0) {
                 let [a, b, c] = corners;
-                let slope = view.site(a).slope_per_texel((b - a).cross(c - a).normalize_or_zero());
+                let slope = view.site(point).slope_per_texel((b - a).cross(c - a).normalize_or_zero());
                 nearest = (depth, INTERPOLATION_UNITS * UNIT * (slope.dot(centre) + depth) + self.format_step(depth));
             }
         }

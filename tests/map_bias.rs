@@ -38,9 +38,26 @@ fn leaning(tilt_deg: f64) -> Scene {
 fn no_plane_shadows_itself_at_any_tilt_under_any_filter() {
     for tilt_deg in [5.0, 45.0, 80.0, 87.0] {
         let scene = leaning(tilt_deg);
-        for (light, projection) in [("sun", "single"), ("lamp", "single"), ("lamp", "cube"), ("sun", "cascaded")] {
+        for (light, projection) in [
+            ("sun", "single"),
+            ("lamp", "single"),
+            ("lamp", "cube"),
+            ("sun", "cascaded"),
+            ("sun", "perspective"),
+            ("sun", "light-space-perspective"),
+            ("lamp", "light-space-perspective"),
+            ("sun", "trapezoidal"),
+            ("lamp", "trapezoidal"),
+            ("sun", "adaptive"),
+            ("lamp", "dual-paraboloid"),
+        ] {
             let shot = Shot::new(&scene, light);
-            for (bias, filter) in DERIVED.iter().flat_map(|bias| FILTERS.map(|filter| (bias, filter))) {
+            // An offset along the normal clears a plane to first order only, where depth bends over it.
+            let suits = |bias: &&&str| !(projection == "trapezoidal" && **bias == "normal");
+            let biases = DERIVED.iter().filter(suits);
+            let is_plain = ["single", "cube", "cascaded"].contains(&projection);
+            let filters = if is_plain { &FILTERS[..] } else { &["nearest", "pcf-box5"] };
+            for (bias, filter) in biases.flat_map(|bias| filters.iter().map(move |filter| (bias, filter))) {
                 let axes = format!("projection={projection},filter={filter},bias={bias},bias_cap_texels=1000");
                 let pixels = shot.evaluate(&format!("map:size=200,{axes}")).verdict.pixels;
                 assert_eq!(pixels.differing, 0, "tilt {tilt_deg}, {light}, {axes}, of {}", pixels.asked);

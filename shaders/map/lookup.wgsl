@@ -48,8 +48,9 @@ struct Placed {
     normal_in_world: vec3f,
     position_in_texels: vec2f,
     reference: f32,
-    // By how much the reference changes from one texel to the next, and by how much at most.
+    // By how much the reference changes from one texel to the next, how fast that bends, and by how much at most.
     reference_per_texel: vec2f,
+    bend_per_texel: vec2f,
     reference_reach: f32,
 }
 
@@ -98,7 +99,8 @@ fn placed(view: u32, moved: vec3f, normal_in_world: vec3f, reach_texels: vec2f) 
     let reference = at.depth - views[view].depth_sign * bias;
     let follows_plane = lookup.clearance == CLEARANCE_RECEIVER_PLANE;
     let per_texel = select(vec2f(0.0), depth_per_texel(around, normal_in_world, lookup.texels), follows_plane);
-    return Placed(view, moved, normal_in_world, at.uv * lookup.texels, reference, per_texel, cap_depth(around));
+    let bend = bend_per_texel(views[view], moved, normal_in_world, at, lookup.texels);
+    return Placed(view, moved, normal_in_world, at.uv * lookup.texels, reference, per_texel, bend, cap_depth(around));
 }
 
 // The reference of one texel of a receiver's view, given that of the receiver's own place.
@@ -107,7 +109,7 @@ fn reference_at(placed: Placed, reference: f32, texel: vec2i) -> f32 {
         return reference;
     }
     let away = vec2f(texel) + 0.5 - placed.position_in_texels;
-    let change = clamp(dot(placed.reference_per_texel, away), -placed.reference_reach, placed.reference_reach);
+    let change = clamp(bent(placed.reference_per_texel, placed.bend_per_texel, away), -placed.reference_reach, placed.reference_reach);
     return clamp(reference + change, 0.0, 1.0);
 }
 

@@ -60,6 +60,11 @@ fn slack(
     return rounding + bent_m / range_m;
 }
 
+// Only its slope is known.
+fn bend_per_texel(view: View, point_in_world: vec3f, normal_in_world: vec3f, in_map: InMap, texels: vec2f) -> vec2f {
+    return vec2f(0.0);
+}
+
 fn nearest_texel(texel: vec2i, texels: vec2f) -> vec2i {
     let in_square = clamp(texel, vec2i(0), vec2i(texels) - 1);
     let off = 2.0 * (vec2f(in_square) + 0.5) / texels - 1.0;

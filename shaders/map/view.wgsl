@@ -1,6 +1,6 @@
 // One view of a map, and what follows from the gradients of its coordinates. Twin of
 // src/technique/map/projection/{view,site}.rs; a layout file defines project, gradients,
-// point_beside, slack and nearest_texel.
+// point_beside, slack, bend_per_texel and nearest_texel.
 
 struct View {
     u_row: vec4f,
@@ -40,7 +40,7 @@ struct Shares {
     second_weight: f32,
 }
 
-// Depth per texel beyond which every bias is at its cap.
+// Change per texel beyond which every bias is at its cap.
 const STEEPEST: f32 = 1e3;
 const POSITION_ROUNDING: f32 = 1.1920929e-7; // 2^-23
 
@@ -61,11 +61,24 @@ fn metres_per_depth(at: Gradients) -> f32 {
 
 // Change of depth from one texel to the next along u and along v on a plane.
 fn depth_per_texel(at: Gradients, normal_in_world: vec3f, texels: vec2f) -> vec2f {
+    return change_per_texel(at, at.depth, normal_in_world, texels);
+}
+
+// The same of anything with a gradient, per metre.
+fn change_per_texel(at: Gradients, gradient: vec3f, normal_in_world: vec3f, texels: vec2f) -> vec2f {
     let volume = dot(normal_in_world, cross(at.u, at.v)) * texels;
-    let change = vec2f(dot(at.depth, cross(at.v, normal_in_world)), dot(at.depth, cross(normal_in_world, at.u)));
+    let change = vec2f(dot(gradient, cross(at.v, normal_in_world)), dot(gradient, cross(normal_in_world, at.u)));
     // A plane that the light sees edge-on has no volume.
     let edge_on = abs(volume) * STEEPEST <= abs(change);
     return select(change / volume, vec2f(STEEPEST), edge_on);
+}
+
+// What is left of a place's divisor, at least; with less its plane is seen edge-on there.
+const LEAST_SHARE: f32 = 1e-3;
+
+// How much depth changes over some texels, given how fast it changes and bends per texel.
+fn bent(change_per_texel: vec2f, bend_per_texel: vec2f, texels: vec2f) -> f32 {
+    return dot(change_per_texel, texels) / max(1.0 - dot(bend_per_texel, texels), LEAST_SHARE);
 }
 
 // How far along its normal a plane must move for its depth to change by what it changes from one texel to the next.

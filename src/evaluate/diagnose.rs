@@ -14,8 +14,17 @@ const TRIED_PER_CAUSE: usize = 3;
 /// Worst pixels named per cause.
 const NAMED_PIXELS: usize = 3;
 /// The biases that a search compares, and the rasteriser's slope factor with each.
-const BIASES: [(&str, &str); 6] =
-    [("none", "auto"), ("slope", "0.5"), ("slope", "1"), ("slope", "2"), ("slope", "4"), ("closed-form", "auto")];
+const BIASES: [(&str, &str); 9] = [
+    ("none", "auto"),
+    ("slope", "0.5"),
+    ("slope", "1"),
+    ("slope", "2"),
+    ("slope", "4"),
+    ("normal", "auto"),
+    ("midpoint", "auto"),
+    ("receiver-plane", "auto"),
+    ("closed-form", "auto"),
+];
 
 /// What one evaluation came to.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,7 +174,8 @@ fn worst_pixels(evaluation: &Evaluation<'_>, cause: Cause) -> Vec<u32> {
 }
 
 /// Looks for a bias that is free of self-shadowing and of detached contacts: none, the rasteriser's slope with growing
-/// factors, the closed form, each in place of whatever bias `spec` has; `None` where the technique knows no bias.
+/// factors, those that follow from the receiver's plane, the middle of two surfaces, each in place of whatever bias `spec`
+/// has; `None` where the technique knows no bias.
 ///
 /// # Errors
 /// [`Interrupted`] if the user asked to stop.
@@ -190,9 +200,13 @@ pub fn search_bias(
     Ok((!verdict.tried.is_empty()).then_some(verdict))
 }
 
+/// How the parameters begin that add to a bias; by default they add nothing.
+const AMOUNTS: &str = "bias_";
+
 /// The specification with a bias and a slope factor in place of all that it says about bias.
 fn with_bias(spec: &Spec, (bias, slope): (&str, &str)) -> Result<Spec, SpecError> {
-    let rest = [("bias_constant_ulps", "auto"), ("bias_depth_m", "0"), ("bias_normal_texels", "0")];
-    let changes = [("bias", bias), ("bias_slope", slope)].into_iter().chain(rest);
-    changes.into_iter().try_fold(spec.clone(), |spec, (key, value)| spec.with(key, value))
+    let amounts = spec.technique().params().iter().filter(|param| param.name.starts_with(AMOUNTS));
+    let without = amounts.map(|amount| (amount.name, amount.default.to_string()));
+    let changes = without.chain([("bias", bias.to_owned()), ("bias_slope", slope.to_owned())]);
+    changes.into_iter().try_fold(spec.clone(), |spec, (key, value)| spec.with(key, &value))
 }

@@ -117,9 +117,9 @@ pub fn evaluate<'v>(
     watch: &dyn Watch,
 ) -> Result<Evaluation<'v>, EvaluateError> {
     let job = view.job(question.light, &question.classes);
-    let start = Instant::now();
+    let (start, built_ms) = (Instant::now(), view.gpu.building_ms());
     let prepared = spec.technique().prepare(spec, job)?;
-    let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
+    let prepare_ms = start.elapsed().as_secs_f64() * 1e3 - (view.gpu.building_ms() - built_ms);
     let answer = prepared.run()?;
     let cost = Cost::counted(&answer.passes, prepared.bytes(), prepare_ms);
     let mask = answer.mask;

@@ -7,7 +7,7 @@
 //! by pixel, less what changes in the truth.
 
 use super::{Effort, EvaluateError, Question, View, evaluate};
-use crate::cast::Occlusion;
+use crate::cast::{Casters, Occlusion};
 use crate::gpu::Gpu;
 use crate::mask::{Mask, Truth, TruthMask};
 use crate::receiver::{Asked, Receiver};
@@ -128,7 +128,11 @@ fn followed_frame(
     let followed = Job { fitted_to, ..first.job(question.light, &question.classes) };
     let job = Job { scene: moved, ..followed };
     let mut mask = spec.technique().prepare(spec, job)?.run()?.mask;
-    let still_seen = |receiver: &Option<Receiver>| receiver.is_some_and(|receiver| is_seen(&view, &receiver));
+    let mut opaque = moved.clone();
+    opaque.meshes.iter_mut().for_each(|mesh| mesh.casts = true);
+    let surfaces = Casters::new(&opaque);
+    let still_seen =
+        |receiver: &Option<Receiver>| receiver.is_some_and(|receiver| is_seen(moved, &surfaces, &receiver));
     let seen: Vec<bool> = first.receivers.pixels.par_iter().map(still_seen).collect();
     for (answer, _) in mask.pixels.iter_mut().zip(seen).filter(|(_, is_seen)| !is_seen) {
         *answer = None;
@@ -139,16 +143,16 @@ fn followed_frame(
     Ok(Frame { truth: question.truth.mask.clone(), mask })
 }
 
-/// Whether a view shows a point: not beyond its outermost pixel centres, and not behind a caster.
-fn is_seen(view: &View<'_>, receiver: &Receiver) -> bool {
-    let (camera, size) = (&view.scene.camera, view.scene.image_size);
+/// Whether the camera shows a point: not beyond its outermost pixel centres, and not behind a surface.
+fn is_seen(scene: &Scene, surfaces: &Casters, receiver: &Receiver) -> bool {
+    let (camera, size) = (&scene.camera, scene.image_size);
     let clip = camera.clip_from_world(size) * receiver.point_in_world.extend(1.0);
     let from_corner = DVec2::new(clip.x + clip.w, clip.w - clip.y) * 0.5 * size.as_dvec2() / clip.w;
     let is_inside = clip.w >= camera.near_m
         && from_corner.min_element() >= 0.5
         && (size.as_dvec2() - from_corner).min_element() >= 0.5;
     let sight = Segment { from: receiver.point_in_world, to: camera.eye.as_dvec3() };
-    is_inside && view.casters.occlusion(&sight, Some(receiver.triangle), 0.0) == Occlusion::Clear
+    is_inside && surfaces.occlusion(&sight, Some(receiver.triangle), 0.0) == Occlusion::Clear
 }
 
 /// How many pixels change otherwise than the truth does, by more than `threshold`.

@@ -99,40 +99,48 @@ impl Gpu {
 
     /// A compute pipeline.
     pub(crate) fn compute_pipeline(&self, label: &str, files: &[Wgsl]) -> ComputePipeline {
-        self.device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label: Some(label),
-            layout: None,
-            module: &self.shader(label, files),
-            entry_point: Some("main"),
-            compilation_options: Default::default(),
-            cache: None,
+        let text = self.text(files);
+        self.pipelines.compute(text.clone(), || {
+            self.device.create_compute_pipeline(&ComputePipelineDescriptor {
+                label: Some(label),
+                layout: None,
+                module: &self.module(label, text),
+                entry_point: Some("main"),
+                compilation_options: Default::default(),
+                cache: None,
+            })
         })
     }
 
     /// A render pipeline without multisampling.
     pub(crate) fn render_pipeline(&self, drawing: &Drawing<'_>) -> RenderPipeline {
-        let module = &self.shader(drawing.label, drawing.files);
-        let fragment = (!drawing.targets.is_empty()).then(|| FragmentState {
-            module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: drawing.targets,
-        });
-        self.device.create_render_pipeline(&RenderPipelineDescriptor {
-            label: Some(drawing.label),
-            layout: None,
-            vertex: VertexState {
+        let text = self.text(drawing.files);
+        let Drawing { label: _, files: _, vertices, primitive, depth_stencil, targets } = drawing;
+        let state = format!("{vertices:?} {primitive:?} {depth_stencil:?} {targets:?}");
+        self.pipelines.render(text.clone() + &state, || {
+            let module = &self.module(drawing.label, text);
+            let fragment = (!targets.is_empty()).then(|| FragmentState {
                 module,
-                entry_point: Some("vertex"),
+                entry_point: Some("fragment"),
                 compilation_options: Default::default(),
-                buffers: drawing.vertices,
-            },
-            primitive: drawing.primitive,
-            depth_stencil: drawing.depth_stencil.clone(),
-            multisample: Default::default(),
-            fragment,
-            multiview_mask: None,
-            cache: None,
+                targets,
+            });
+            self.device.create_render_pipeline(&RenderPipelineDescriptor {
+                label: Some(drawing.label),
+                layout: None,
+                vertex: VertexState {
+                    module,
+                    entry_point: Some("vertex"),
+                    compilation_options: Default::default(),
+                    buffers: vertices,
+                },
+                primitive: *primitive,
+                depth_stencil: depth_stencil.clone(),
+                multisample: Default::default(),
+                fragment,
+                multiview_mask: None,
+                cache: None,
+            })
         })
     }
 }

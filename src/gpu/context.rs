@@ -2,6 +2,7 @@
 
 use super::GpuError;
 use super::adapter::{ADAPTER_VARIABLE, AdapterSummary, LimitsSummary, WANTED_FEATURES, choose, instance};
+use super::pipelines::Pipelines;
 use super::snapping::vertex_step_px;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{
@@ -16,6 +17,7 @@ pub struct Gpu {
     adapter: AdapterSummary,
     lost: Arc<Mutex<Option<String>>>,
     vertex_step_px: f64,
+    pub(super) pipelines: Pipelines,
     /// Text of shaders that is replaced, to see whether anybody notices.
     #[cfg(test)]
     pub(crate) fault: Option<(&'static str, &'static str)>,
@@ -51,6 +53,7 @@ impl Gpu {
             adapter: summary,
             lost,
             vertex_step_px: 0.0,
+            pipelines: Pipelines::default(),
             #[cfg(test)]
             fault: None,
         };
@@ -82,6 +85,12 @@ impl Gpu {
         self.vertex_step_px
     }
 
+    /// How long building pipelines took so far, milliseconds: once for each that was asked for.
+    #[must_use]
+    pub fn building_ms(&self) -> f64 {
+        self.pipelines.spent().as_secs_f64() * 1e3
+    }
+
     pub(crate) fn has(&self, feature: Features) -> bool {
         self.device.features().contains(feature)
     }
@@ -100,6 +109,9 @@ impl Gpu {
         let during = during.to_owned();
         if let Some(why) = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone() {
             return Err(GpuError::Lost { during, why });
+        }
+        if !errors.is_empty() {
+            self.pipelines.forget();
         }
         match errors.into_iter().next() {
             Some(Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { during }),

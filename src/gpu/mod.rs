@@ -9,6 +9,7 @@ mod gbuffer;
 mod geometry;
 #[cfg(test)]
 pub(crate) mod layout;
+mod pipelines;
 mod readback;
 mod recorder;
 pub mod shader;

@@ -31,10 +31,15 @@ pub fn concatenated(files: &[Wgsl]) -> String {
 }
 
 impl super::Gpu {
-    pub(crate) fn shader(&self, label: &str, files: &[Wgsl]) -> wgpu::ShaderModule {
+    /// What a module of these files holds.
+    pub(super) fn text(&self, files: &[Wgsl]) -> String {
         let text = concatenated(files);
         #[cfg(test)]
         let text = self.fault.iter().fold(text, |text, (from, to)| text.replace(from, to));
+        text
+    }
+
+    pub(super) fn module(&self, label: &str, text: String) -> wgpu::ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
             source: wgpu::ShaderSource::Wgsl(text.into()),

@@ -93,7 +93,9 @@ fn meshes(file: &str, obj: &RawObj, drawn: &[&RawObject]) -> Vec<MeshEntry> {
 
 /// Fits the model's bounding sphere into the picture's height, the shorter side of the default image.
 fn camera(bounds: &Bounds) -> CameraEntry {
-    let distance = MARGIN * bounds.radius() / (0.5 * FOV_Y_DEG).to_radians().sin();
+    // A model without extent is refused with a better reason than a camera that looks nowhere.
+    let radius = Some(bounds.radius()).filter(|radius| *radius > 0.0).unwrap_or(1.0);
+    let distance = MARGIN * radius / (0.5 * FOV_Y_DEG).to_radians().sin();
     let eye = bounds.centre() + TOWARDS_EYE.normalize() * distance;
     // Four digits are enough for a view, and easier to edit.
     let digits = 10_f64.powi(3 - distance.log10().floor() as i32);

@@ -13,7 +13,8 @@ pub struct Cost {
     pub gbuffer_ms: Option<f64>,
     /// GPU time of each pass, in order.
     pub passes: Vec<PassTime>,
-    /// CPU time of the preparation (fits, silhouettes, buffers, pipelines), milliseconds; `None` if nobody measured it.
+    /// CPU time of the preparation (fits, silhouettes, buffers) without that of pipelines, which are built once per device,
+    /// milliseconds; `None` if nobody measured it.
     pub prepare_ms: Option<f64>,
     /// Bytes of maps and buffers the technique allocates on the GPU.
     pub bytes: u64,

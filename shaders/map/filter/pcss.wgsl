@@ -74,20 +74,18 @@ fn cone_of(in_map: InMap) -> Cone {
     let beyond_near_m = (in_map.depth - near_depth) * metres_per_depth;
     let is_parallel = lookup.light.w == 0.0;
     let distance_m = select(dot(axis, own.point_in_world - lookup.light.xyz), beyond_near_m, is_parallel);
-    var halves = mat2x3f(across(numbers[HALVES].xyz, axis), across(numbers[HALVES + 1u].xyz, axis));
+    let from_light = select(own.point_in_world - lookup.light.xyz, axis, is_parallel);
+    var halves = mat2x3f(numbers[HALVES].xyz, numbers[HALVES + 1u].xyz);
     if numbers[HALVES].w == 1.0 {
-        let radius_m = numbers[HALVES].x;
-        halves = mat2x3f(radius_m * normalize(across(around.u, axis)), radius_m * normalize(across(around.v, axis)));
+        // Nothing in the map changes along the ray, so u changes across it.
+        let across = normalize(around.u);
+        halves = numbers[HALVES].x * mat2x3f(across, cross(normalize(from_light), across));
     }
     let first = lookup.texels * vec2f(dot(around.u, halves[0]), dot(around.v, halves[0]));
     let second = lookup.texels * vec2f(dot(around.u, halves[1]), dot(around.v, halves[1]));
     let near_m = distance_m - beyond_near_m;
     let widest = 2.0 * max(length(first), length(second));
     return Cone(halves, widest, is_parallel, distance_m, near_m, metres_per_depth);
-}
-
-fn across(vector: vec3f, axis: vec3f) -> vec3f {
-    return vector - axis * dot(vector, axis);
 }
 
 fn spread(cone: Cone, blocker_m: f32) -> f32 {
@@ -106,5 +104,7 @@ fn texel(cone: Cone, index: u32, spread: f32) -> vec2i {
         place = turned(listed);
     }
     let beside = own.point_in_world + spread * (cone.halves_in_world * place);
-    return vec2i(floor(project(views[own.view], beside).uv * lookup.texels));
+    let at = project(views[own.view], beside);
+    // Kernels wider than the map may reach behind the light.
+    return vec2i(floor(select(own.position_in_texels, at.uv * lookup.texels, at.q > 0.0)));
 }

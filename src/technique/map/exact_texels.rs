@@ -126,8 +126,9 @@ pub(super) fn cast(
     casters.all_hits(&ray, None, &mut hits);
     let surface = |hit: &Hit| {
         let corners = scene.triangle_in_world(hit.triangle);
-        let depth = lookup.rasterised_depth(view, corners, ray.from.lerp(ray.to, hit.t))?;
-        let bias = lookup.hardware_bias(view, corners);
+        let point_in_world = ray.from.lerp(ray.to, hit.t);
+        let depth = lookup.rasterised_depth(view, corners, point_in_world)?;
+        let bias = lookup.hardware_bias(view, corners, point_in_world);
         lookup.draws_side(scene, hit.triangle).then_some(Surface { triangle: hit.triangle, depth, bias })
     };
     hits.iter().filter_map(surface).collect()

@@ -3,7 +3,7 @@
 
 use super::bias::{Amounts, Clearance};
 use super::filter::Kernel;
-use super::projection::{Projection, Shares, Site, View};
+use super::projection::{Projection, Shares, Site, View, bent};
 use super::settings::{Border, CasterSides, NearMode, Seam};
 use super::{DepthFormat, Settings};
 use crate::scene::{Bounds, Light, Segment};
@@ -66,6 +66,8 @@ pub struct Placed {
     pub reference: f64,
     /// By how much that changes from one texel to the next along u and along v.
     pub reference_per_texel: DVec2,
+    /// How fast that bends.
+    pub bend_per_texel: DVec2,
     /// By how much it changes at most.
     pub reference_reach: f64,
 }
@@ -93,7 +95,8 @@ impl Placed {
             return *self;
         }
         let away = texel.as_dvec2() + 0.5 - self.position_in_texels;
-        let change = self.reference_per_texel.dot(away).clamp(-self.reference_reach, self.reference_reach);
+        let change = bent(self.reference_per_texel, self.bend_per_texel, away)
+            .clamp(-self.reference_reach, self.reference_reach);
         Self { reference: (self.reference + change).clamp(0.0, 1.0), ..*self }
     }
 }
@@ -213,6 +216,7 @@ impl Lookup {
             depth,
             reference,
             reference_per_texel: if follows_plane { site.depth_per_texel(normal_in_world) } else { DVec2::ZERO },
+            bend_per_texel: if follows_plane { site.bend_per_texel(normal_in_world) } else { DVec2::ZERO },
             reference_reach: self.cap_depth(&site),
         }
     }

@@ -75,8 +75,9 @@ impl Technique for Map {
         let settings = Settings::of(spec);
         let has_moments = settings.filter.moments().is_some();
         let limit = gpu.limits().texture_side - if has_moments { moment_passes::side(0) } else { 0 };
-        if settings.size > limit {
-            let what = format!("maps of {} texels a side (its limit is {limit})", settings.size);
+        let texels = settings.projection.layer_texels(&settings);
+        if texels > limit {
+            let what = format!("maps of {texels} texels a side (its limit is {limit})");
             return Err(Unsupported::MissingFeature { what });
         }
         let (layers, limit) = (settings.projection.most_views(&settings), gpu.limits().texture_layers);

@@ -76,9 +76,9 @@ impl Lookup {
             + FORMAT_STEPS * self.format.step(site.at.depth)
     }
 
-    /// What the rasteriser adds to the depth of a triangle: its constant and slope, away from the light.
+    /// What the rasteriser adds to the depth of a triangle at a point of it: its constant and slope, away from the light.
     #[must_use]
-    pub fn hardware_bias(&self, view: usize, corners_in_world: [DVec3; 3]) -> f64 {
+    pub fn hardware_bias(&self, view: usize, corners_in_world: [DVec3; 3], point_in_world: DVec3) -> f64 {
         if self.bias.constant_units == 0 && self.bias.slope == 0.0 {
             return 0.0;
         }
@@ -86,7 +86,10 @@ impl Lookup {
         let (view, [a, b, c]) = (&self.views[view], corners_in_world);
         let depth_of = |corner: DVec3| view.project(corner).depth.clamp(0.0, 1.0);
         let largest = depth_of(a).max(depth_of(b)).max(depth_of(c));
-        let site = pancaked.map_or_else(|| view.site(a), |pancaked| pancaked.site(view, a));
+        let site = match pancaked {
+            Some(pancaked) => pancaked.site(view, point_in_world),
+            None => view.site(point_in_world),
+        };
         let slope = site.slope_per_texel((b - a).cross(c - a).normalize_or_zero()).max_element();
         self.rasteriser_bias(view, largest, slope)
     }

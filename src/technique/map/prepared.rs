@@ -93,8 +93,9 @@ impl<'j> PreparedMap<'j> {
         let site = lookup.views[placed.view].site(placed.point_in_world);
         let metres_per_depth = site.metres_per_depth();
         let corners = self.job.scene.triangle_in_world(receiver.triangle);
-        let by_rasteriser = lookup.hardware_bias(placed.view, corners).abs();
-        let along_light_depth = (placed.depth - placed.reference).abs() + by_rasteriser;
+        let by_rasteriser = lookup.hardware_bias(placed.view, corners, placed.point_in_world);
+        let sign = lookup.views[placed.view].depth_sign;
+        let along_light_depth = sign * (placed.depth - placed.reference + by_rasteriser);
         let along_light_m = along_light_depth * metres_per_depth;
         let kernel = self.settings.filter.bias_kernel(&self.settings.kernel);
         let acne_free = lookup.closed_form(&site, receiver.normal_in_world, DVec2::splat(kernel));

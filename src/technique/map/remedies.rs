@@ -2,6 +2,7 @@
 
 use crate::cause::Cause;
 use crate::technique::Spec;
+use crate::technique::map::filter;
 
 /// Largest map the family knows, texels a side.
 const LARGEST: i64 = 16_384;
@@ -15,7 +16,7 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
     let size = spec.integer("size");
     let larger = || ("size", (2 * size).min(LARGEST).to_string());
     let set = |key: &'static str, value: &str| (key, value.to_owned());
-    let (filter, kernel) = spec.choice("filter");
+    let (filter_name, kernel) = spec.choice("filter");
     let changes = match cause {
         // Acne in spite of the closed form: its cap holds it back.
         Cause::Acne if spec.choice("bias").0 == "closed-form" => {
@@ -25,6 +26,7 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::Curvature => vec![set("bias_normal_texels", "1"), larger(), set("bias_slope", "4")],
         Cause::PeterPanning => vec![
             set("bias_depth_m", "0"),
+            set("bias_depth_texels", "0"),
             set("bias_normal_texels", "0"),
             set("bias_slope", "auto"),
             set("bias_constant_ulps", "auto"),
@@ -45,9 +47,15 @@ pub(super) fn remedies(spec: &Spec, cause: Cause) -> Vec<Spec> {
         Cause::ClippingNear => vec![set("near_m", "auto"), set("pull_back_m", "auto"), set("fit", "scene")],
         Cause::ClippingFar => vec![set("far_m", "auto"), set("fit", "scene")],
         Cause::ClippingFrustum => vec![set("width_m", "auto"), set("fov_deg", "auto"), set("fit", "scene")],
-        Cause::FilterWidth if filter == "pcss" => vec![set("search_taps", "64"), set("filter", "pcss128"), larger()],
+        Cause::FilterWidth if filter_name == "pcss" => {
+            vec![set("search_taps", "64"), set("filter", "pcss128"), larger()]
+        }
         Cause::FilterWidth if kernel > 1 => vec![larger(), set("filter", "nearest")],
         Cause::FilterWidth => vec![larger()],
+        // Moments that overflow, or lose what tells two surfaces apart.
+        Cause::Precision if filter::by_name(filter_name).moments().is_some() => {
+            vec![set("moment_format", "float32"), set("exponent", "auto")]
+        }
         Cause::Precision => {
             vec![set("format", "depth32float"), set("depth_convention", "reversed"), set("bias", "closed-form")]
         }

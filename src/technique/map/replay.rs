@@ -201,7 +201,7 @@ impl<'r> Replayer<'r> {
             let corners = scene.triangle_in_world(hit.triangle);
             let drawn = lookup.rasterised_depth(placed.view, corners, hit.point_in_world);
             drawn.filter(|_| lookup.draws_side(scene, hit.triangle)).is_some_and(|depth| {
-                let by_rasteriser = lookup.hardware_bias(placed.view, corners);
+                let by_rasteriser = lookup.hardware_bias(placed.view, corners, hit.point_in_world);
                 !lookup.is_lit(placed.view, placed.reference, (depth + by_rasteriser).clamp(0.0, 1.0))
             })
         };

@@ -5,6 +5,7 @@ use super::layers::{self, Layer};
 use super::prepared::PreparedPlanar;
 use super::settings::{Overlap, Placement, Projection};
 use super::shadow_plane::Side;
+use crate::cast::Occlusion;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
@@ -48,7 +49,7 @@ fn replay_pixel(planar: &PreparedPlanar<'_>, answer: &Mask, pixel: u32) -> Optio
     let receiver = planar.receiver(pixel)?;
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
     let segment = planar.job.light.segment_from(receiver.point_in_world, planar.job.scene.bounds().radius());
-    let exact = lit(planar.job.casters.any_hit(&segment, Some(receiver.triangle)).is_none());
+    let exact = lit(planar.job.casters.occlusion(&segment, Some(receiver.triangle), 0.0) == Occlusion::Clear);
 
     let ray = pixel_ray(planar, pixel, &receiver);
     let own = own_plane(planar, &receiver);

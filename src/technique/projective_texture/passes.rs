@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::gpu::shader::{Wgsl, wgsl};
-use crate::gpu::{CORNER_LAYOUT, GpuError, PassRecord, Recorder};
+use crate::gpu::{CORNER_LAYOUT, Drawing, GpuError, PassRecord, Recorder};
 use crate::technique::map::{Lookup, filter};
 use crate::technique::receiver_buffer::LookUp;
 use crate::technique::{Job, ReceiverBuffer};
@@ -11,9 +11,8 @@ use glam::Mat4;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, BufferUsages, Color, ColorTargetState,
-    ColorWrites, ComputePipeline, ComputePipelineDescriptor, Extent3d, FragmentState, LoadOp, Operations,
-    RenderPassColorAttachment, RenderPipeline, RenderPipelineDescriptor, StoreOp, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, VertexState,
+    ColorWrites, ComputePipeline, Extent3d, LoadOp, Operations, RenderPassColorAttachment, RenderPipeline, StoreOp,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
 };
 
 const CASTER: Wgsl = wgsl!("projective_texture/caster.wgsl");
@@ -162,40 +161,17 @@ impl PicturePasses {
 }
 
 fn caster_pipeline(job: &Job<'_>) -> RenderPipeline {
-    let module = job.gpu.shader("projective texture caster", &[CASTER]);
-    job.gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
-        label: Some("projective texture caster"),
-        layout: None,
-        vertex: VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(CORNER_LAYOUT)],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(ColorTargetState { format: PICTURE, blend: None, write_mask: ColorWrites::ALL })],
-        }),
-        multiview_mask: None,
-        cache: None,
+    job.gpu.render_pipeline(&Drawing {
+        label: "projective texture caster",
+        files: &[CASTER],
+        vertices: &[Some(CORNER_LAYOUT)],
+        targets: &[Some(ColorTargetState { format: PICTURE, blend: None, write_mask: ColorWrites::ALL })],
+        ..Drawing::default()
     })
 }
 
 fn lookup_pipeline(job: &Job<'_>, settings: &Settings) -> ComputePipeline {
-    let label = "projective texture lookup";
-    job.gpu.device.create_compute_pipeline(&ComputePipelineDescriptor {
-        label: Some(label),
-        layout: None,
-        module: &job.gpu.shader(label, &[RECEIVER, LOOKUP, settings.map.filter.shader()]),
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    })
+    job.gpu.compute_pipeline("projective texture lookup", &[RECEIVER, LOOKUP, settings.map.filter.shader()])
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! sampling → filter → the GPU's answer.
 
 use super::prepared::PreparedPicture;
+use crate::cast::Occlusion;
 use crate::cause::{Cause, Replay, Stage};
 use crate::mask::Mask;
 use crate::receiver::Receiver;
@@ -88,7 +89,7 @@ fn replay_pixel(
     let answered = f64::from(answer.pixels.get(pixel as usize).copied().flatten()?.get());
     let radius_m = picture.job.scene.bounds().radius();
     let segment = picture.job.light.segment_from(receiver.point_in_world, radius_m);
-    let exact = lit(picture.job.casters.any_hit(&segment, Some(receiver.triangle)).is_none());
+    let exact = lit(picture.job.casters.occlusion(&segment, Some(receiver.triangle), 0.0) == Occlusion::Clear);
 
     let (model, coverage) = line_through(picture, &receiver, &segment);
     let position = position(picture, &receiver);

@@ -54,7 +54,9 @@ impl Technique for Silhouette {
                 vec![larger(), set("fit", "receivers".to_owned())]
             }
             Cause::Acne | Cause::Curvature => vec![set("bias", "closed-form".to_owned()), larger()],
-            Cause::PeterPanning => vec![larger(), set("bias_depth_m", "0".to_owned())],
+            Cause::PeterPanning => {
+                vec![larger(), set("bias_depth_m", "0".to_owned()), set("bias_depth_texels", "0".to_owned())]
+            }
             Cause::ClippingNear | Cause::ClippingFar | Cause::ClippingFrustum => {
                 ["near_m", "far_m", "width_m", "fov_deg"].map(|key| set(key, "auto".to_owned())).to_vec()
             }

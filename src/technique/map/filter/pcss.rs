@@ -1,9 +1,9 @@
 //! `pcss`: percentage-closer soft shadows. The mean distance of the blockers around the receiver gives the width of the
 //! penumbra that they throw, and that the width of the kernel.
 //!
-//! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane across the axis that depth is
-//! measured along (the map's or, on a paraboloid, the ray's own), and that the light looks at them from there: the kernel
-//! is then the light as the receiver sees it through that plane, with a rectangle's own sides or a sphere's or sun's disc. Known failures: blockers at several distances, blockers that the search
+//! R. Fernando, "Percentage-Closer Soft Shadows", 2005. Assumes that blockers lie on one plane, parallel to the rectangle or
+//! the disc that the light shows, and that the light looks at them from there: the kernel is then the light as the receiver
+//! sees it through that plane. Known failures: blockers at several distances, blockers that the search
 //! misses, and the limits of the widths (`filter-width`). Formulas: docs/map.md#percentage-closer-soft-shadows.
 
 use super::turn::{TURN, shifted, turned};
@@ -110,8 +110,8 @@ impl Filter for Pcss {
 
 /// What a receiver sees of the light, in its view.
 struct Cone {
-    /// The light's half sides, or two radii of the disc that it shows, across the axis that depth is measured along: metres;
-    /// of a sun, metres for each metre to the blocker.
+    /// The light's half sides, or two radii of the disc that it shows, metres; of a sun, metres for each metre to the
+    /// blocker.
     halves_in_world: [DVec3; 2],
     /// How wide the wider of both is in the map at the receiver: texels.
     widest: f64,
@@ -137,13 +137,15 @@ impl Cone {
         let beyond_near_m = (site.at.depth - (1.0 - view.cleared())) * metres_per_depth;
         let is_parallel = asked.light.w == 0.0;
         let distance_m = if is_parallel { beyond_near_m } else { axis.dot(point - asked.light.truncate()) };
-        let across = |vector: DVec3| vector - axis * vector.dot(axis);
+        let ray = if is_parallel { axis } else { (point - asked.light.truncate()).normalize() };
         let sides = [asked.numbers[HALVES], asked.numbers[HALVES + 1]];
         let radius_m = f64::from(sides[0].x);
         let halves_in_world = if sides[0].w == 1.0 {
-            [u, v].map(|along| radius_m * across(along).normalize())
+            // Nothing in the map changes along the ray, so u changes across it.
+            let across = u.normalize();
+            [across, ray.cross(across)].map(|direction| radius_m * direction)
         } else {
-            sides.map(|side| across(side.truncate().as_dvec3()))
+            sides.map(|side| side.truncate().as_dvec3())
         };
         let on_map = |half: DVec3| view.texels.as_dvec2() * DVec2::new(u.dot(half), v.dot(half));
         let [first, second] = halves_in_world.map(|half| on_map(half).length());
@@ -178,7 +180,10 @@ impl Cone {
         };
         let [first, second] = self.halves_in_world;
         let beside = asked.placed.point_in_world + spread * (place.x * first + place.y * second);
-        (asked.view.project(beside).uv * asked.view.texels.as_dvec2()).floor().as_ivec2()
+        let at = asked.view.project(beside);
+        // Kernels wider than the map may reach behind the light.
+        let place = if at.q > 0.0 { at.uv * asked.view.texels.as_dvec2() } else { asked.placed.position_in_texels };
+        place.floor().as_ivec2()
     }
 }
 

@@ -62,6 +62,10 @@ impl Projection for Adaptive {
         Ok(vec![view_of(&whole, Tile::WHOLE, settings.knobs.tile_texels)])
     }
 
+    fn layer_texels(&self, settings: &Settings) -> u32 {
+        settings.knobs.tile_texels + 2 * RIM_TEXELS
+    }
+
     fn refine(
         &self,
         scene: &Scene,
@@ -76,6 +80,9 @@ impl Projection for Adaptive {
         let coarsest = view_of(&whole, Tile::WHOLE, knobs.tile_texels);
         let samples = receivers.iter().filter_map(|receiver| {
             let at = coarsest.project(receiver.point_in_world);
+            if at.q <= 0.0 {
+                return None;
+            }
             Some(Sample { uv: at.uv, m: scout.m(&coarsest, receiver)? })
         });
         let rules =

@@ -212,7 +212,11 @@ fn around_sphere(
     // Up to a power of two times a multiple of the step: the same for every camera.
     let step = RADIUS_STEP * radius_m.log2().floor().exp2();
     let radius_m = (radius_m / step).ceil() * step;
-    let light_view_from_world = look(DVec3::ZERO, travel);
+    // From as far back as a single map's, but with the grid of the world's own origin.
+    let bounds = scene.bounds();
+    let pull_back_m = settings.fit.pull_back_m.unwrap_or(bounds.radius().max(f64::MIN_POSITIVE));
+    let from = travel * (travel.dot(bounds.centre()) - pull_back_m);
+    let light_view_from_world = look(from, travel);
     let centre = scene.camera.eye.as_dvec3() + centre_m * forward(scene);
     let in_view = light_view_from_world.transform_point3(centre).truncate();
     let texels = UVec2::splat(settings.size);
@@ -222,7 +226,7 @@ fn around_sphere(
     let window = Window { min: around.min + moved, max: around.max + moved };
     let reach = Reach::within(scene, &light_view_from_world, Shape::Parallel, window).unwrap_or_default();
     // All receivers of the slice lie within its sphere, and that does not depend on which there are.
-    let reach = Reach { nearest_receiver_m: travel.dot(centre) - radius_m, ..reach };
+    let reach = Reach { nearest_receiver_m: travel.dot(centre - from) - radius_m, ..reach };
     let (near_m, far_m) = settings.fit.planes_m(reach.planes(light, Shape::Parallel, settings))?;
     let (shape, reversed, depth_metric) = (Shape::Parallel, settings.reversed, settings.depth_metric);
     Ok(LightFrustum { light_view_from_world, window, near_m, far_m, shape, reversed, depth_metric, texels })

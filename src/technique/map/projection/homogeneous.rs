@@ -1,7 +1,7 @@
 //! The usual layout: u, v and depth are quotients of linear functions of the world point, as one 4 × 4 matrix (or two,
 //! if depth is not warped along) gives them. Twin of `shaders/map/homogeneous.wgsl`.
 
-use super::site::Site;
+use super::site::{Site, bent};
 use super::view::{Gradients, InMap, Layout, Rows, apply};
 use crate::scene::{Bounds, Segment};
 use glam::{DVec2, DVec3, IVec2, UVec2, Vec4};
@@ -66,8 +66,8 @@ impl Layout for Homogeneous {
         Some(if runs_away { Segment { from, to } } else { Segment { from: to, to: from } })
     }
 
-    /// The rounding of the point and the rows to f32; planes are planes in the map.
-    fn slack(&self, site: &Site<'_>, _: DVec3, slope_per_texel: DVec2, _: DVec2) -> f64 {
+    /// The rounding of the point and the rows to f32; and where depth has a divisor of its own, what planes bend.
+    fn slack(&self, site: &Site<'_>, normal_in_world: DVec3, slope_per_texel: DVec2, reach_texels: DVec2) -> f64 {
         let rows = &site.view.rows;
         let reach = |row: Vec4| row.as_dvec4().abs().dot(site.point_in_world.abs().extend(1.0));
         let quotient = |row: Vec4, divisor: Vec4, value: f64, of: f64| (reach(row) + value.abs() * reach(divisor)) / of;
@@ -76,12 +76,33 @@ impl Layout for Homogeneous {
         let u = quotient(rows.u, rows.q, site.at.uv.x, site.at.q);
         let v = quotient(rows.v, rows.q, site.at.uv.y, site.at.q);
         let slope = slope_per_texel * site.view.texels.as_dvec2();
-        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v)
+        let bend = if rows.depth_q == rows.q { 0.0 } else { bend(site, normal_in_world, reach_texels) };
+        POSITION_ROUNDING * (depth + slope.x * u + slope.y * v) + bend
+    }
+
+    fn bend_per_texel(&self, site: &Site<'_>, normal_in_world: DVec3) -> DVec2 {
+        let rows = &site.view.rows;
+        if rows.depth_q == rows.q {
+            return DVec2::ZERO;
+        }
+        let relative = |row: Vec4, value: f64| row.truncate().as_dvec3() / value;
+        let of_ratio = relative(rows.q, site.at.q) - relative(rows.depth_q, apply(rows.depth_q, site.point_in_world));
+        site.change_per_texel(of_ratio, normal_in_world)
     }
 
     fn nearest_texel(&self, texel: IVec2, texels: UVec2) -> IVec2 {
         texel.clamp(IVec2::ZERO, texels.as_ivec2() - 1)
     }
+}
+
+/// By how much more than its slope says a plane comes nearer to the light within so many texels: most at a corner.
+fn bend(site: &Site<'_>, normal_in_world: DVec3, reach_texels: DVec2) -> f64 {
+    let nearer_per_texel = -site.view.depth_sign * site.depth_per_texel(normal_in_world);
+    let bend_per_texel = site.bend_per_texel(normal_in_world);
+    let corners = [DVec2::new(1.0, 1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(-1.0, -1.0)];
+    let nearer = |corner: DVec2| bent(nearer_per_texel, bend_per_texel, corner * reach_texels);
+    let straight = nearer_per_texel.abs().dot(reach_texels);
+    corners.map(nearer).into_iter().fold(straight, f64::max) - straight
 }
 
 /// The part of a segment where q > 0.

@@ -31,7 +31,7 @@ pub(in crate::technique::map) use drawn::Drawn;
 pub use frustum::{LightFrustum, Shape, Window};
 pub use knobs::{Knobs, params};
 pub(in crate::technique::map) use pancaked::Pancaked;
-pub use site::Site;
+pub use site::{Site, bent};
 pub(in crate::technique) use view::GpuView;
 pub use view::{Gradients, InMap, Layout, Rows, View};
 
@@ -123,6 +123,10 @@ pub trait Projection: Sync {
         _scout: &dyn Scout,
     ) -> Result<Option<Refined>, TechniqueError> {
         Ok(None)
+    }
+    /// Side of each layer, texels.
+    fn layer_texels(&self, settings: &Settings) -> u32 {
+        settings.size
     }
     /// As many views as there may be.
     fn most_views(&self, _settings: &Settings) -> u32 {

@@ -144,7 +144,8 @@ fn view(scene: &Scene, light: &Light, fit: &Fit, visible: &[DVec3]) -> Result<Li
                     };
                     let angle = |point: &DVec3| forward.angle_between(*point - position);
                     within_limit(2.0 * receivers.iter().map(angle).fold(0.0, f64::max))?;
-                    Window::around(receivers.iter().map(|point| {
+                    // A receiver at the light itself lies in no direction.
+                    Window::around(receivers.iter().filter(|point| **point != position).map(|point| {
                         let in_view = light_view_from_world.transform_point3(*point);
                         in_view.truncate() / -in_view.z
                     }))

@@ -6,8 +6,18 @@
 use super::view::{Gradients, InMap, View};
 use glam::{DVec2, DVec3};
 
-/// Depth per texel beyond which every bias is at its cap.
+/// Change per texel beyond which every bias is at its cap.
 const STEEPEST: f64 = 1e3;
+
+/// What is left of a place's divisor, at least; with less its plane is seen edge-on there.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// How much depth changes over some texels, given how fast it changes and bends per texel. On a plane the world is affine in
+/// the map but for a divisor, and so is depth, but for the ratio of that and its own.
+#[must_use]
+pub fn bent(change_per_texel: DVec2, bend_per_texel: DVec2, texels: DVec2) -> f64 {
+    change_per_texel.dot(texels) / (1.0 - bend_per_texel.dot(texels)).max(LEAST_SHARE)
+}
 
 /// See the module.
 #[derive(Debug, Clone, Copy)]
@@ -59,10 +69,14 @@ impl Site<'_> {
     /// Change of depth from one texel to the next along u and along v on a plane through the point.
     #[must_use]
     pub fn depth_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
+        self.change_per_texel(self.gradients.depth, normal_in_world)
+    }
+
+    /// The same of anything with a gradient, per metre.
+    pub(super) fn change_per_texel(&self, gradient: DVec3, normal_in_world: DVec3) -> DVec2 {
         // A plane that the light sees edge-on gives infinity or NaN; both are "steepest".
         let bounded = |change: f64| if change.abs() < STEEPEST { change } else { STEEPEST };
-        let [along_u, along_v] = self.texel_steps_m(normal_in_world);
-        DVec2::new(bounded(self.gradients.depth.dot(along_u)), bounded(self.gradients.depth.dot(along_v)))
+        DVec2::from_array(self.texel_steps_m(normal_in_world).map(|step| bounded(gradient.dot(step))))
     }
 
     /// The same without sign.
@@ -78,6 +92,12 @@ impl Site<'_> {
         let Gradients { u, v, depth } = self.gradients;
         let change = DVec2::new(normal_in_world.dot(depth.cross(v)), normal_in_world.dot(u.cross(depth))).abs();
         change / (depth.dot(self.ray()).abs() * self.view.texels.as_dvec2())
+    }
+
+    /// How fast depth bends away from its slope along u and along v on a plane through the point; see [`bent`].
+    #[must_use]
+    pub fn bend_per_texel(&self, normal_in_world: DVec3) -> DVec2 {
+        self.view.layout.bend_per_texel(self, normal_in_world)
     }
 
     /// By how much texels up to `reach_texels` away may differ from its plane's slope.

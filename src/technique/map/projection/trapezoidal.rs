@@ -58,9 +58,10 @@ impl Projection for Trapezoidal {
         };
         let (eye, axis) = (scene.camera.eye.as_dvec3(), forward(scene));
         let (near_m, far_m) = range(body.receivers.iter().map(|point| axis.dot(*point - eye)));
-        let ends = [near_m.max(scene.camera.near_m), far_m].map(|distance| in_light(eye + distance * axis));
+        let ends = [near_m.max(scene.camera.near_m), far_m].map(|distance| eye + distance * axis);
         let hull: Vec<DVec2> = body.receivers.iter().map(|point| in_light(*point)).collect();
-        let trapezoid = Trapezoid::around(&hull, ends, settings.knobs.focus_fraction, settings.knobs.focus_at);
+        let line = before_light(&light_clip_from_world, ends).map_or([DVec2::ZERO; 2], |ends| ends.map(in_light));
+        let trapezoid = Trapezoid::around(&hull, line, settings.knobs.focus_fraction, settings.knobs.focus_at);
         let texels = f64::from(settings.size);
         let rim = settings.rim_texels().min(0.5 * (texels - 1.0));
         let shift = 2.0 / texels * settings.fit.phase_texels;
@@ -71,6 +72,22 @@ impl Projection for Trapezoidal {
         let mut view = View::of_clip(plain, &clip_from_world, sign);
         (view.rows.depth, view.rows.depth_q) = (depth, depth_q);
         Ok(vec![view])
+    }
+}
+
+/// How near to the light's own plane the centre line may come, as a share of its far end's distance from it.
+const LEAST_BEFORE: f64 = 1e-3;
+
+/// The part of a line that lies before a light; what is level with it or behind has no place in its picture.
+fn before_light(light_clip_from_world: &DMat4, ends: [DVec3; 2]) -> Option<[DVec3; 2]> {
+    let w = ends.map(|end| (*light_clip_from_world * end.extend(1.0)).w);
+    let least = LEAST_BEFORE * w[0].max(w[1]);
+    let at = |w_wanted: f64| ends[0].lerp(ends[1], (w_wanted - w[0]) / (w[1] - w[0]));
+    match w.map(|w| w >= least) {
+        _ if least <= 0.0 => None,
+        [true, true] => Some(ends),
+        [false, _] => Some([at(least), ends[1]]),
+        [true, false] => Some([ends[0], at(least)]),
     }
 }
 

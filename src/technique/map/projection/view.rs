@@ -24,6 +24,10 @@ pub trait Layout: std::fmt::Debug + Sync {
     /// By how much rounding, and drawing in straight pieces, can move the depths of a plane through a site against each
     /// other, beyond its slope; the f64 twin of `slack`. `reach_texels`: how far away the texel is that is read.
     fn slack(&self, site: &Site<'_>, normal_in_world: DVec3, slope_per_texel: DVec2, reach_texels: DVec2) -> f64;
+    /// How fast depth bends along u and along v on a plane, per texel; 0 where it does not, or only its slope is known.
+    fn bend_per_texel(&self, _site: &Site<'_>, _normal_in_world: DVec3) -> DVec2 {
+        DVec2::ZERO
+    }
     /// The texel of the view that is nearest to one which may lie beyond its side; the f64 twin of `nearest_texel`.
     fn nearest_texel(&self, texel: IVec2, texels: UVec2) -> IVec2;
 }
