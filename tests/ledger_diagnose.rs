@@ -69,7 +69,7 @@ fn a_fix_is_reported_with_its_side_effects() {
 }
 
 #[test]
-fn a_coarse_map_at_a_contact_has_no_bias_that_clears_both() {
+fn at_a_contact_a_coarse_map_needs_a_bias_that_follows_the_plane() {
     let scene = shipped("contact", SIZE);
     let shot = Shot::new(&scene, "sun");
     let searched = |typed: &str| {
@@ -77,15 +77,18 @@ fn a_coarse_map_at_a_contact_has_no_bias_that_clears_both() {
         verdict.expect("nobody stops it").expect("maps have a bias")
     };
     let coarse = searched("map:size=32");
-    assert!(coarse.free_of_both.is_none() && coarse.tried.len() >= 5, "{:?}", coarse.tried);
+    let free = coarse.free_of_both.expect("one that follows the plane, or none at all where there is no second surface");
+    assert!(["midpoint", "receiver-plane"].contains(&free.choice("bias").0), "{}", free.short());
     for (spec, own, detached) in &coarse.tried {
         println!("{}: self-shadowing {own}, detached {detached}", spec.short());
-        assert!(own + detached > 0, "{}", spec.short());
+        let is_along_the_light = ["none", "slope", "closed-form"].contains(&spec.choice("bias").0);
+        assert!(!is_along_the_light || own + detached > 0, "{}", spec.short());
         let measured = Outcome::of(&shot.evaluate_spec(spec));
         assert_eq!(measured.of_cause(Cause::Acne) + measured.of_cause(Cause::Curvature), *own);
         assert_eq!(measured.of_cause(Cause::PeterPanning), *detached);
     }
-    // Control: with finer texels there is one, and whatever bias was typed is not on top of it.
+    assert_eq!(coarse.tried.len(), 9);
+    // Control: with finer texels the slope suffices, and whatever bias was typed is not on top of it.
     let fine = searched("map:size=4096,bias=none,bias_depth_m=0.1,bias_normal_texels=3,bias_depth_texels=9");
     let free = fine.free_of_both.expect("a bias");
     let outcome = Outcome::of(&shot.evaluate_spec(&free));
