@@ -7,6 +7,7 @@ mod support;
 
 use gnomon::cause::Cause;
 use gnomon::mask::Visibility;
+use gnomon::technique::Unsupported;
 use support::scenes::shipped;
 use support::shot::{Shot, parsed};
 
@@ -83,13 +84,21 @@ fn a_missed_silhouette_is_named_after_the_texels() {
 fn what_does_not_fit_is_refused() {
     let scene = shipped("torus", SIZE);
     let shot = Shot::new(&scene, "sun");
-    for typed in [
-        "hybrid:map=(volume)",
-        "hybrid:volume=(map)",
-        "hybrid:map=(map:filter=pcf-box3)",
-        "hybrid:volume=(volume:range_mask=on)",
-        "hybrid:volume=(volume:stencil_ops=clamp)",
+    let filters = "the texels around a receiver are compared, not filtered: map=(...) takes no filter";
+    let flags = "the stencil's highest bit marks silhouettes: volume=(...) takes no range_mask=on and no \
+                 stencil_ops=clamp";
+    for (typed, why) in [
+        ("hybrid:map=(volume)", "map=(volume) is no map"),
+        ("hybrid:volume=(map)", "volume=(map) is no volume"),
+        ("hybrid:map=(map:filter=pcf-box3)", filters),
+        ("hybrid:volume=(volume:range_mask=on)", flags),
+        ("hybrid:volume=(volume:stencil_ops=clamp)", flags),
     ] {
-        assert!(shot.evaluate_if_supported(&parsed(typed)).is_none(), "{typed}");
+        let refusal = shot.refusal(&parsed(typed));
+        assert_eq!(refusal, Some(Unsupported::Combination { why: why.to_owned() }), "{typed}");
+    }
+    // Control: other values of the same keys are answered.
+    for typed in ["hybrid:map=(map:bias=slope)", "hybrid:volume=(volume:count=mixed,range_mask=off,stencil_ops=wrap)"] {
+        assert_eq!(shot.refusal(&parsed(typed)), None, "{typed}");
     }
 }

@@ -7,12 +7,15 @@
 mod support;
 
 use glam::Vec3;
+use gnomon::cause::Cause;
 use gnomon::evaluate::View;
 use gnomon::mask::Mask;
 use gnomon::scene::Scene;
-use support::scenes::{ask, gpu, judged, scene_of_texts, shipped, with_triangles};
+use support::scenes::{ask, explained, gpu, judged, scene_of_texts, shipped, with_triangles};
 
 const SIZE: [u32; 2] = [400, 300];
+/// Pixels that rounding may put on the other side of an edge in such a picture.
+const MOST_BY_PRECISION: u64 = 8;
 /// Scenes whose shadow edges are images of mesh edges.
 const STRAIGHT: [(&str, &str); 4] =
     [("triangle", "lamp"), ("triangle", "sun"), ("polygons-14", "lamp"), ("polygons-69", "lamp")];
@@ -48,17 +51,69 @@ fn sizes_light_kinds_and_odd_pictures_are_answered() {
     }
 }
 
-/// Either depth convention, and depth of 24 bits, choose the same corners but where rounding decides.
+/// SI-1: where the four corners agree, the point between them is of no consequence.
 #[test]
-fn the_depth_convention_matters_little() {
+fn agreeing_corners_answer_as_a_map_does() {
+    let gpu = gpu();
+    for (name, light) in [("torus", "sun"), ("polygons-69", "lamp"), ("room", "spot")] {
+        let scene = shipped(name, SIZE);
+        let view = View::new(&gpu, &scene).unwrap();
+        let question = ask(&view, light);
+        let answers = |typed: &str| judged(&view, &question, typed).mask.pixels;
+        let outlined = answers("silhouette:size=255");
+        // The same four texels, compared with the same bias; neither 0 nor 1 where they disagree.
+        let agreeing = |map: &str| -> Vec<bool> {
+            let pairs = outlined.iter().zip(answers(map)).filter_map(|(outlined, map)| outlined.zip(map));
+            pairs.filter(|(_, map)| [0.0, 1.0].contains(&map.get())).map(|(outlined, map)| outlined == map).collect()
+        };
+        let same = agreeing("map:size=256,filter=pcf-box2");
+        assert!(same.iter().all(|is_same| *is_same), "{name} {light}");
+        assert!(2 * same.len() > outlined.iter().flatten().count(), "{name} {light}: {}", same.len());
+        // Control: compared with another bias.
+        assert!(
+            !agreeing("map:size=256,filter=pcf-box2,bias=none").into_iter().all(|is_same| is_same),
+            "{name} {light}"
+        );
+    }
+}
+
+/// What the device draws and answers is what its twin says, also in the smallest grids.
+#[test]
+fn every_error_is_explained() {
+    let gpu = gpu();
+    for (name, light) in [("torus", "lamp"), ("polygons-69", "lamp")] {
+        let scene = shipped(name, SIZE);
+        let view = View::new(&gpu, &scene).unwrap();
+        let question = ask(&view, light);
+        for size in [1, 2, 4, 7, 256] {
+            let evaluation = explained(&view, &question, &format!("silhouette:size={size}"));
+            let by_precision = evaluation.ledger.causes.get(&Cause::Precision).map_or(0, |share| share.pixels);
+            println!("{name} {size}: {by_precision} of {} by precision", evaluation.verdict.pixels.wrong);
+            assert!(by_precision <= MOST_BY_PRECISION, "{name} {size}: {by_precision}");
+        }
+    }
+}
+
+/// Either depth convention and every format choose the same corners: outlines are where they are, and the bias clears a
+/// receiver's surface by more than any of them rounds.
+#[test]
+fn how_depth_is_stored_does_not_matter() {
     let (gpu, scene) = (gpu(), shipped("polygons-69", SIZE));
     let view = View::new(&gpu, &scene).unwrap();
     let question = ask(&view, "lamp");
     let mask = |typed: &str| judged(&view, &question, typed).mask;
-    let (reversed, forward) = (mask("silhouette"), mask("silhouette:depth_convention=forward"));
-    let differing = |other: &Mask| reversed.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
-    assert!(differing(&forward) < 60, "{}", differing(&forward));
-    assert!(differing(&mask("silhouette:size=64")) > 200, "another grid is another answer");
+    let usual = mask("silhouette");
+    let differing = |other: &Mask| usual.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
+    for convention in ["reversed", "forward"] {
+        for format in ["depth32float", "depth24plus", "depth16unorm"] {
+            let typed = format!("silhouette:format={format},depth_convention={convention}");
+            assert_eq!(differing(&mask(&typed)), 0, "{typed}");
+        }
+    }
+    // Control: what does matter.
+    for other in ["size=64", "size=255", "bias=none"] {
+        assert!(differing(&mask(&format!("silhouette:{other}"))) > 20, "{other}");
+    }
 }
 
 /// A roof whose shadow ends on a plate below it, over a floor.

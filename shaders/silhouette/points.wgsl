@@ -8,7 +8,7 @@
 
 // Least distance from the light at which an edge is cut, relative to its far end.
 const NEAREST: f32 = 1e-4;
-// Cells by which rounding may move an edge into a neighbour.
+// Cells by which an edge may miss one that it is tried in: rounding, and edges along a border, which touch both sides.
 const RIM: f32 = 0.001;
 // An edge is hidden if it is farther than all four corners by more than this, in units of depth.
 const HIDDEN: f32 = 1e-6;
@@ -47,18 +47,21 @@ fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) edge: u32
 @fragment
 fn fragment(cell: Cell) -> @location(0) vec2f {
     let corner = floor(cell.position.xy);
-    let start = cell.ends.xy - corner;
-    let along = cell.ends.zw - cell.ends.xy;
+    let start = cell.ends.xy;
+    let along = cell.ends.zw - start;
     var first = 0.0;
     var last = 1.0;
+    // The cells on both sides of a border find the same place on it, so that no rounding parts them.
     for (var axis = 0u; axis < 2u; axis++) {
+        let low = corner[axis];
+        let high = corner[axis] + 1.0;
         if along[axis] == 0.0 {
-            if start[axis] < 0.0 || start[axis] > 1.0 {
+            if start[axis] < low || start[axis] > high {
                 discard;
             }
         } else {
-            let enter = -start[axis] / along[axis];
-            let leave = (1.0 - start[axis]) / along[axis];
+            let enter = (low - start[axis]) / along[axis];
+            let leave = (high - start[axis]) / along[axis];
             first = max(first, min(enter, leave));
             last = min(last, max(enter, leave));
         }
@@ -67,7 +70,7 @@ fn fragment(cell: Cell) -> @location(0) vec2f {
     if first > last || is_hidden(vec2i(corner), mix(cell.depths.x, cell.depths.y, middle)) {
         discard;
     }
-    return clamp(start + middle * along, vec2f(0.0), vec2f(1.0));
+    return clamp(start + middle * along - corner, vec2f(0.0), vec2f(1.0));
 }
 
 fn is_hidden(cell: vec2i, depth: f32) -> bool {

@@ -33,6 +33,13 @@ const FAULTS: &[Fault] = &[
     ("map/view.wgsl", "change / volume", "0.9 * change / volume", "map"),
     ("map/homogeneous.wgsl", "vec2f(dot(view.u_row, point), dot(view.v_row, point))", "vec2f(q)", "map"),
     (
+        "map/homogeneous.wgsl",
+        "move_uv.x * cross(around.v, normal)",
+        "move_uv.y * cross(around.v, normal)",
+        ACROSS_FACES,
+    ),
+    ("map/homogeneous.wgsl", "let rounding = POSITION_ROUNDING", "let rounding = -1e5 * POSITION_ROUNDING", "map"),
+    (
         "map/projection/one_view.wgsl",
         "one_view(0u)",
         "Shares(0u, 0u, sqrt(-1.0 - dot(point_in_world, point_in_world)))",
@@ -47,6 +54,13 @@ const FAULTS: &[Fault] = &[
         "map:projection=cascaded,size=64",
     ),
     ("map/lookup.wgsl", "views[view].depth_sign * bias", "-views[view].depth_sign * bias", "map"),
+    ("map/lookup.wgsl", "normal_in_world), shares.second_weight)", "normal_in_world), 1.0)", BLENDED),
+    ("map/lookup.wgsl", "floor(found.uv * lookup.texels)", "floor(found.uv.yx * lookup.texels)", ACROSS_FACES),
+    ("map/lookup.wgsl", "clamp(at.depth, 0.0, 1.0)", "at.depth", "map:border=clamp-edge,far_m=5"),
+    ("map/lookup.wgsl", "nearest_texel(texel, lookup.texels);", "nearest_texel(texel.yx, lookup.texels);", STRETCHED),
+    ("map/lookup.wgsl", "|| lookup.border == BORDER_CLAMP_EDGE) {", ") {", STRETCHED),
+    ("map/paraboloid.wgsl", "length(seen) * direction - seen", "length(seen) * direction.yxz - seen", ACROSS_DISCS),
+    ("map/paraboloid.wgsl", "return rounding + bent_m / range_m", "return rounding", PARABOLOID_KERNEL),
     ("map/nearest_layer.wgsl", "drawn_depth(corner)", "1.0 - drawn_depth(corner)", IN_FRAGMENTS),
     ("map/second_layer.wgsl", "<= SAME_LAYER", ">= SAME_LAYER", "map:bias=midpoint"),
     ("map/midpoint.wgsl", "0.5 * (", "0.9 * (", "map:bias=midpoint"),
@@ -123,6 +137,11 @@ const SOFTENED: &str = "map:filter=pcss,turn=per-pixel,max_texels=20";
 const IN_FRAGMENTS: &str = "map:near_mode=fragment-clamp";
 const PANCAKED: &str = "map:near_mode=vertex-clamp";
 const PARABOLOID: &str = "map:projection=dual-paraboloid";
+const PARABOLOID_KERNEL: &str = "map:projection=dual-paraboloid,size=64,filter=pcf-box5";
+const BLENDED: &str = "map:projection=cascaded,size=64,overlap_ratio=0.3";
+const ACROSS_FACES: &str = "map:projection=cube,size=64,filter=pcf-box5";
+const ACROSS_DISCS: &str = "map:projection=dual-paraboloid,orientation=down,size=16,filter=pcf-box7";
+const STRETCHED: &str = "map:border=clamp-edge,fov_deg=20,filter=pcf-box5";
 const PROJECTED: &str = "projective-texture";
 const ZP_PLUS: &str = "volume:count=zp-plus";
 
@@ -131,11 +150,15 @@ const SIZE: UVec2 = UVec2::new(200, 150);
 /// Pixels that rasterisers and rounding may put on the other side of an edge in such a picture.
 const MOST_BY_PRECISION: u64 = 8;
 
-/// A torus, or area lights for what answers for their extent.
+/// A torus, a room for what needs seams in shadows, or area lights for what answers for their extent.
 fn scene(typed: &str) -> Scene {
     let spec = Spec::parse(typed).unwrap();
     let is_hard = spec.technique().blamed_for_centre(&spec) == Some(Cause::TechniqueModel);
-    let name = if is_hard { "torus" } else { "area" };
+    let name = match (is_hard, [ACROSS_FACES, ACROSS_DISCS].contains(&typed)) {
+        (false, _) => "area",
+        (true, true) => "room",
+        (true, false) => "torus",
+    };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
     load(&folder, &LoadOptions { size: Some(SIZE), ..LoadOptions::default() }).unwrap()
 }

@@ -17,7 +17,7 @@ use gnomon::mask::Truth;
 use gnomon::receiver::Receiver;
 use gnomon::scene::{LoadOptions, Scene, SceneError, load};
 use gnomon::technique::map::Lookup;
-use gnomon::technique::{Spec, TechniqueError};
+use gnomon::technique::{Spec, TechniqueError, Unsupported};
 use gnomon::watch::Unwatched;
 use std::sync::LazyLock;
 
@@ -60,6 +60,15 @@ impl<'s> Shot<'s> {
         match evaluate(&self.view, &self.question, spec, Effort::CAUSES, &Unwatched) {
             Ok(evaluation) => Some(evaluation),
             Err(EvaluateError::Technique(TechniqueError::Unsupported(_))) => None,
+            Err(error) => panic!("{}: {error}", spec.short()),
+        }
+    }
+
+    /// Why a technique does not answer for this light; `None` if it does.
+    pub(crate) fn refusal(&self, spec: &Spec) -> Option<Unsupported> {
+        match evaluate(&self.view, &self.question, spec, Effort::VERDICT, &Unwatched) {
+            Ok(_) => None,
+            Err(EvaluateError::Technique(TechniqueError::Unsupported(why))) => Some(why),
             Err(error) => panic!("{}: {error}", spec.short()),
         }
     }

@@ -154,3 +154,58 @@ impl Prepared for PreparedHybrid<'_> {
         self.map.light_depths()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cast::Casters;
+    use crate::gpu::{GBufferPass, Geometry, Gpu};
+    use crate::inspect::neighbours;
+    use crate::receiver::{Asked, Receivers};
+    use crate::scene::{LoadOptions, load};
+    use crate::technique::Spec;
+    use glam::UVec2;
+    use std::path::Path;
+
+    /// HY-4.
+    #[test]
+    fn off_silhouettes_nothing_is_counted() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/torus");
+        let size = Some(UVec2::new(200, 150));
+        let scene = load(&folder, &LoadOptions { size, ..LoadOptions::default() }).unwrap();
+        let gpu = Gpu::open().unwrap();
+        let geometry = Geometry::upload(&gpu, &scene).unwrap();
+        let gbuffer = GBufferPass::new(&gpu, &scene).unwrap();
+        gbuffer.run(&gpu, &geometry).unwrap();
+        let receivers = Receivers::new(&scene, &gbuffer.read(&gpu).unwrap().triangles);
+        let light = &scene.lights[0];
+        let classes = receivers.classify(&scene, light);
+        let (casters, adjacency) = (Casters::new(&scene), neighbours(&scene));
+        let job = Job {
+            gpu: &gpu,
+            scene: &scene,
+            geometry: &geometry,
+            casters: &casters,
+            adjacency: &adjacency,
+            light,
+            receivers: &receivers,
+            classes: &classes,
+            fitted_to: Asked { receivers: &receivers, classes: &classes },
+        };
+        let map = map::Settings::of(&Spec::parse("map:size=64,filter=pcf-box2").unwrap());
+        let settings = volume::Settings::of(&Spec::parse("volume").unwrap());
+        let hybrid = PreparedHybrid::new(&map, settings.masked(), job).unwrap();
+        hybrid.run().unwrap();
+        let (silhouettes, counts) = (hybrid.silhouettes().unwrap(), hybrid.volume.stencil().unwrap());
+        let counted = |counts: &[u8], on: bool| {
+            silhouettes.iter().zip(counts).filter(|(is_on, count)| **is_on == on && **count > 0).count()
+        };
+        assert_eq!(counted(&counts, false), 0);
+        assert!(counted(&counts, true) > 100, "{}", counted(&counts, true));
+        // Control: without the mask the same pixels are in volumes.
+        let everywhere = PreparedVolume::new(settings, job).unwrap();
+        everywhere.run().unwrap();
+        let off = counted(&everywhere.stencil().unwrap(), false);
+        assert!(off > 100, "{off}");
+    }
+}

@@ -13,6 +13,7 @@ mod depth_format;
 mod drawing;
 mod exact_texels;
 pub mod filter;
+mod gather;
 mod layers;
 mod lookup;
 mod lookup_facts;
@@ -22,6 +23,8 @@ mod midpoint;
 mod moment_passes;
 mod offset;
 mod outline;
+#[cfg(test)]
+mod outline_tests;
 mod own_surface;
 mod passes;
 mod prepared;

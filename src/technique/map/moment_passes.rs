@@ -2,10 +2,10 @@
 
 use super::Settings;
 use super::filter::moments::{Moments, Storage};
+use super::gather::{Gather, Place};
 use super::lookup::Lookup;
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Gpu, GpuError, Recorder};
-use crate::technique::receiver_buffer::workgroups;
 use glam::{DVec4, UVec2, Vec4};
 use wgpu::{
     BindGroup, BindingResource, Buffer, BufferUsages, ComputePipeline, Texture, TextureUsages, TextureView,
@@ -110,32 +110,12 @@ impl MomentPasses {
         Ok(counted.into_iter().sum())
     }
 
-    /// The means at some places (column, row, layer, 0), as the GPU holds them.
-    pub(super) fn gather(&self, gpu: &Gpu, places: &[[u32; 4]]) -> Result<Vec<DVec4>, GpuError> {
-        if places.is_empty() {
-            return Ok(Vec::new());
-        }
-        let gathered: Buffer = gpu.scoped("gathering moments", || {
-            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let input = gpu.buffer("places", places, usage);
-            let output = gpu.buffer("moments", &vec![[0.0_f32; 4]; places.len()], usage);
-            let pipeline = gpu.compute_pipeline("moments gather", &[GATHER]);
-            let means = self.view();
-            let resources =
-                [input.as_entire_binding(), output.as_entire_binding(), BindingResource::TextureView(&means)];
-            let bindings = gpu.bind(&pipeline.get_bind_group_layout(0), &resources);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            let [columns, rows] = workgroups(places.len());
-            pass.dispatch_workgroups(columns, rows, 1);
-            drop(pass);
-            gpu.queue.submit([encoder.finish()]);
-            output
-        })?;
-        let values: Vec<[f32; 4]> = gpu.read_buffer(&gathered, "reading gathered moments")?;
-        Ok(values.into_iter().map(|value| Vec4::from_array(value).as_dvec4()).collect())
+    /// The means at some places, as the GPU holds them.
+    pub(super) fn gather(&self, gpu: &Gpu, places: &[Place]) -> Result<Vec<DVec4>, GpuError> {
+        let layers = &self.view();
+        let gather = Gather { gpu, label: "gathering moments", shader: GATHER, layers };
+        let means: Vec<[f32; 4]> = gather.texels(places, |place| *place)?;
+        Ok(means.into_iter().map(|mean| Vec4::from_array(mean).as_dvec4()).collect())
     }
 
     /// Bytes of the textures.

@@ -34,6 +34,8 @@ pub(super) struct Points {
 
 /// Least distance from the light at which an edge is cut, relative to its far end.
 const NEAREST: f64 = 1e-4;
+/// Cells by which an edge may miss one that it is tried in: rounding, and edges along a border, which touch both sides.
+const RIM: f64 = 0.001;
 /// An edge is hidden if it is farther than all four corners by more than this, in units of depth.
 const HIDDEN: f64 = 1e-6;
 
@@ -49,10 +51,10 @@ impl Points {
             let [from, to] = [a, b].map(|at| at.uv * view.texels.as_dvec2() - 0.5);
             let limit = cells.as_dvec2() - 1.0;
             let clamped = |place: DVec2| place.floor().clamp(DVec2::ZERO, limit).as_uvec2();
-            let (low, high) = (clamped(from.min(to)), clamped(from.max(to)));
+            let (low, high) = (clamped(from.min(to) - RIM), clamped(from.max(to) + RIM));
             for cell in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| UVec2::new(x, y))) {
                 let corner = cell.as_dvec2();
-                let Some(middle) = middle_in_cell(from - corner, to - corner) else { continue };
+                let Some(middle) = middle_in_cell(from, to, corner) else { continue };
                 let depth = a.depth + middle * (b.depth - a.depth);
                 let corners = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE].map(|step| cell + step);
                 let is_behind = |texel: &UVec2| view.depth_sign * (depth - stored(*texel)) > HIDDEN;
@@ -102,17 +104,19 @@ fn before_the_light(view: &View, [near, far]: [DVec3; 2]) -> Option<[DVec3; 2]> 
     (least > 0.0).then_some([start, end])
 }
 
-/// Where along a segment the middle of its part in the closed unit square lies; `None` if it has none.
-fn middle_in_cell(from: DVec2, to: DVec2) -> Option<f64> {
+/// Where along a segment the middle of its part in a closed cell lies; `None` if it has none. The cells on both sides of a
+/// border find the same place on it, so that no rounding parts them: those of a segment are 4-connected.
+fn middle_in_cell(from: DVec2, to: DVec2, cell: DVec2) -> Option<f64> {
     let along = to - from;
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {
+        let borders = [cell[axis], cell[axis] + 1.0];
         if along[axis] == 0.0 {
-            if !(0.0..=1.0).contains(&from[axis]) {
+            if !(borders[0]..=borders[1]).contains(&from[axis]) {
                 return None;
             }
         } else {
-            let (enter, leave) = (-from[axis] / along[axis], (1.0 - from[axis]) / along[axis]);
+            let [enter, leave] = borders.map(|border| (border - from[axis]) / along[axis]);
             (first, last) = (first.max(enter.min(leave)), last.min(enter.max(leave)));
         }
     }
@@ -198,44 +202,5 @@ impl PointPass {
         let of_edge = 2 * size_of::<[f32; 4]>() as u64;
         u64::from(self.target.width()) * u64::from(self.target.height()) * size_of::<[f32; 2]>() as u64
             + u64::from(self.edges) * of_edge
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Three by three cells, the middle one of which has that point, and its neighbours theirs.
-    fn around(own: [f32; 2], left: [f32; 2], top: [f32; 2], right: [f32; 2], bottom: [f32; 2]) -> Points {
-        let empty = [2.0, 2.0];
-        let rows = [empty, top, empty, left, own, right, empty, bottom, empty];
-        Points { cells: UVec2::splat(3), points: rows.map(Vec2::from_array).to_vec() }
-    }
-
-    /// The corner that answers for a place in the middle cell, 0 or 1 along each axis.
-    fn corner(points: &Points, x: f64, y: f64) -> [i32; 2] {
-        (points.texel(DVec2::new(1.5 + x, 1.5 + y)) - 1).to_array()
-    }
-
-    #[test]
-    fn without_points_the_nearest_centre_answers() {
-        let empty = around([2.0; 2], [2.0; 2], [2.0; 2], [2.0; 2], [2.0; 2]);
-        for (x, y, nearest) in [(0.2, 0.3, [0, 0]), (0.8, 0.3, [1, 0]), (0.7, 0.9, [1, 1]), (0.1, 0.6, [0, 1])] {
-            assert_eq!(corner(&empty, x, y), nearest);
-        }
-    }
-
-    #[test]
-    fn a_straight_edge_is_followed_exactly() {
-        // y = 0.2 + 0.4 x through the cell and on to its left and right neighbours.
-        let line = |x: f64| 0.2 + 0.4 * x;
-        let at = |x: f32| [x, 0.2 + 0.4 * x];
-        let [own, left, right] = [at(0.5), [0.75, 0.2 - 0.4 * 0.25], [0.5, 0.2 + 0.4 * 1.5]];
-        let points = around(own, left, [2.0; 2], right, [2.0; 2]);
-        for i in 0..100_i32 {
-            let (x, y) = (f64::from(i % 10) / 10.0 + 0.05, f64::from(i / 10) / 10.0 + 0.03);
-            let is_above = corner(&points, x, y)[1] == 0;
-            assert_eq!(is_above, y < line(x), "{x} {y}");
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! The GPU side of a map: draw every view into its layer, look receivers up, read chosen texels back.
 
 use super::filter::moments::Storage;
+use super::gather::{Gather, Place};
 use super::layers::{self, Layer, record_layers};
 use super::lookup::Lookup;
 use super::mask_pass::{EXTREMES, MaskPass};
@@ -10,7 +11,7 @@ use super::outline::{POINTS, PointPass, Points, WEDGES};
 use super::{Settings, filter, projection};
 use crate::gpu::shader::{Wgsl, wgsl};
 use crate::gpu::{Geometry, Gpu, GpuError, PassRecord, Recorder};
-use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer, workgroups};
+use crate::technique::receiver_buffer::{Chunk, LookUp, ReceiverBuffer};
 use glam::{DVec3, DVec4, Vec4};
 use projection::{GpuView, View};
 use std::collections::BTreeMap;
@@ -213,42 +214,21 @@ impl MapPasses {
         self.moments.as_ref().map(|moments| moments.overflowed(gpu)).transpose()
     }
 
-    /// The means of moments at some places (column, row, layer, 0), as the GPU holds them; none without moments.
-    pub(super) fn gather_means(&self, gpu: &Gpu, places: &[[u32; 4]]) -> Result<Vec<DVec4>, GpuError> {
+    /// The means of moments at some places, as the GPU holds them; none without moments.
+    pub(super) fn gather_means(&self, gpu: &Gpu, places: &[Place]) -> Result<Vec<DVec4>, GpuError> {
         self.moments.as_ref().map_or_else(|| Ok(Vec::new()), |moments| moments.gather(gpu, places))
     }
 
     /// The stored depths of some texels, by index, as the GPU holds them.
     pub(super) fn gather(&self, gpu: &Gpu, lookup: &Lookup, texels: &[u32]) -> Result<Vec<f64>, GpuError> {
-        if texels.is_empty() {
-            return Ok(Vec::new());
-        }
-        let position = |index: &u32| {
+        let place = |index: &u32| {
             let (layer, texel) = lookup.texel_of(*index);
             [texel.x, texel.y, layer as u32, 0]
         };
-        let positions: Vec<[u32; 4]> = texels.iter().map(position).collect();
-        let depths: Buffer = gpu.scoped("gathering texels", || {
-            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-            let input = gpu.buffer("texels", &positions, usage);
-            let output = gpu.buffer("depths", &vec![0.0_f32; texels.len()], usage);
-            let pipeline = gpu.compute_pipeline("map gather", &[GATHER]);
-            let all_layers = all_layers(&self.map);
-            let resources =
-                [input.as_entire_binding(), output.as_entire_binding(), BindingResource::TextureView(&all_layers)];
-            let bindings = gpu.bind(&pipeline.get_bind_group_layout(0), &resources);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            let [columns, rows] = workgroups(texels.len());
-            pass.dispatch_workgroups(columns, rows, 1);
-            drop(pass);
-            gpu.queue.submit([encoder.finish()]);
-            output
-        })?;
-        let values: Vec<f32> = gpu.read_buffer(&depths, "reading gathered texels")?;
-        Ok(values.into_iter().map(f64::from).collect())
+        let layers = &all_layers(&self.map);
+        let gather = Gather { gpu, label: "gathering texels", shader: GATHER, layers };
+        let depths: Vec<f32> = gather.texels(texels, place)?;
+        Ok(depths.into_iter().map(f64::from).collect())
     }
 
     /// Bytes of the map and its buffers.
