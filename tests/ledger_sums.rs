@@ -109,7 +109,7 @@ const SPECS: &[&str] = &[
     "map:size=300,filter=vsm",
     "map:filter=vsm4,bleeding_cut=0.2,size=200,depth_convention=forward,border=shadow,fit=manual",
     "map:filter=esm5,size=256,moment_format=float16",
-    "map:projection=trapezoidal,filter=evsm2,size=200,border=clamp-edge",
+    "map:projection=trapezoidal,filter=evsm2,size=200,border=shadow",
     "map:filter=evsm,moment_format=float16,exponent=30,size=200",
     "map:filter=msm,size=300,bias=none",
     "map:filter=depth-mean6,size=150,moment_format=float16",

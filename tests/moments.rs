@@ -165,4 +165,6 @@ fn views_that_cannot_be_averaged_across_are_refused() {
     assert_eq!(refusal("map:projection=cube,filter=vsm,seam=clamp"), None);
     assert!(refusal("map:filter=msm,depth_metric=projected").is_some());
     assert!(refusal("map:filter=msm,bias=receiver-plane").unwrap().to_string().contains("texel by texel"));
+    assert!(refusal("map:filter=vsm,border=clamp-edge").unwrap().to_string().contains("has no means"));
+    assert_eq!(refusal("map:filter=vsm,border=shadow"), None);
 }

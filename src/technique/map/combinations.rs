@@ -1,7 +1,7 @@
 //! Which choices of a map exclude each other, whatever the scene: each refusal says why, and what to type instead.
 
 use super::bias::Clearance;
-use super::settings::{CasterSides, DepthMetric, NearMode, Seam, Settings};
+use super::settings::{Border, CasterSides, DepthMetric, NearMode, Seam, Settings};
 use crate::scene::Light;
 use crate::technique::Unsupported;
 
@@ -24,6 +24,12 @@ pub(super) fn fits_together(settings: &Settings, light: &Light) -> Result<(), Un
     if settings.filter.moments().is_some() && settings.seam == Seam::PerTap && !settings.projection.has_one_view() {
         return refused(format!(
             "filter={filter} averages within a view, not across its sides: projection={projection} needs seam=clamp"
+        ));
+    }
+    if settings.filter.moments().is_some() && settings.border == Border::ClampEdge {
+        return refused(format!(
+            "border=clamp-edge stretches texels over receivers beyond the map, where filter={filter} has no means: it \
+             needs border=lit or shadow"
         ));
     }
     let compares_texels = settings.filter.moments().is_none() && !settings.filter.samples();
