@@ -20,6 +20,10 @@ const SIZE: [u32; 2] = [48, 36];
 /// take to the power of 40, is known to a few units only; measured, 2.
 const MOST_ROUNDED: u64 = 3;
 
+/// Combinations that do not go together, of all 672: 84 that reckon with distances where a warped map stores none, 7 that see
+/// the light's shape where it is warped, and 73 of a filter with a bias that works otherwise.
+const REFUSED: u32 = 164;
+
 /// The answer to a combination, or why there is none.
 fn answered<'s>(shot: &'s Shot<'_>, typed: &str) -> Result<Evaluation<'s>, String> {
     match evaluate(&shot.view, &shot.question, &parsed(typed), Effort::CAUSES, &Unwatched) {
@@ -36,23 +40,29 @@ fn every_combination_answers_with_a_ledger_that_adds_up_or_says_why_not() {
     let mut answers: BTreeMap<&str, u32> = BTreeMap::new();
     let mut refusals: BTreeMap<String, u32> = BTreeMap::new();
     for projection in projection::registry() {
-        let plain = format!("map:size=64,seam=clamp,projection={}", projection.name());
+        let plain = format!("map:size=64,projection={}", projection.name());
         let handled: Vec<&Shot<'_>> =
             shots.iter().filter(|shot| shot.evaluate_if_supported(&parsed(&plain)).is_some()).collect();
         for (f, filter) in filter::registry().iter().enumerate() {
             for (b, bias) in bias::registry().iter().enumerate() {
-                let typed = format!("{plain},filter={},bias={}", filter.choice().name, bias.name());
+                // Means are not taken across a view's sides.
+                let seam = if filter.moments().is_some() { "clamp" } else { "per-tap" };
+                let parts = [projection.name(), filter.choice().name, bias.name()];
+                let typed = format!("{plain},seam={seam},filter={},bias={}", parts[1], parts[2]);
                 // The lights in turn: each is asked of every projection, filter and bias that handles it.
                 match answered(handled[(f + b) % handled.len()], &typed) {
                     Ok(evaluation) => {
                         assert_adds_up(&typed, &evaluation);
                         let rounded = evaluation.ledger.causes.get(&Cause::Precision).map_or(0, |share| share.pixels);
                         assert!(rounded <= MOST_ROUNDED, "{typed}: {rounded} wrong pixels are left to rounding");
-                        for part in [projection.name(), filter.choice().name, bias.name()] {
+                        for part in parts {
                             *answers.entry(part).or_default() += 1;
                         }
                     }
-                    Err(why) => *refusals.entry(why).or_default() += 1,
+                    Err(why) => {
+                        assert!(parts.iter().any(|part| why.contains(&format!("={part}"))), "{typed}: {why}");
+                        *refusals.entry(why).or_default() += 1;
+                    }
                 }
             }
         }
@@ -60,5 +70,6 @@ fn every_combination_answers_with_a_ledger_that_adds_up_or_says_why_not() {
     println!("answers: {answers:?}\nrefusals: {refusals:#?}");
     let parts = projection::registry().len() + filter::registry().len() + bias::registry().len();
     assert_eq!(answers.len(), parts, "every part suits some others");
-    assert!(refusals.keys().all(|why| why.contains('=')), "a refusal names what does not fit: {refusals:#?}");
+    let refused: u32 = refusals.values().sum();
+    assert_eq!(refused, REFUSED, "{refusals:#?}");
 }

@@ -78,7 +78,9 @@ def emitter(light: dict[str, Any], mi: Any, unit_m: float) -> dict[str, Any]:
             # A disc so far away that it is the same from everywhere, with the radiance that gives the irradiance.
             origin, axis = np.asarray(scaled("position")), np.asarray(light["direction"])
             up = [0.0, 0.0, 1.0] if abs(axis[1]) > 0.9 else [0.0, 1.0, 0.0]  # noqa: PLR2004
-            facing = mi.ScalarTransform4f().look_at(origin.tolist(), (origin + np.linalg.norm(origin) * axis).tolist(), up)
+            facing = mi.ScalarTransform4f().look_at(
+                origin.tolist(), (origin + np.linalg.norm(origin) * axis).tolist(), up
+            )
             radius = light["radius_m"] / unit_m
             return {
                 "type": "disk",

@@ -24,7 +24,13 @@ LIGHTS: dict[str, tuple[dict[str, Any], float]] = {
     ),
     "sphere": ({"kind": "sphere", "position": [0, HEIGHT, 0], "radius_m": 0.25}, np.pi * INTENSITY * (0.25 / 2) ** 2),
     "sun": (
-        {"kind": "sun", "direction": [0, -1, 0], "position": [0, 1e6, 0], "radius_m": 1e6 * np.tan(0.05), "sine": np.sin(0.05)},
+        {
+            "kind": "sun",
+            "direction": [0, -1, 0],
+            "position": [0, 1e6, 0],
+            "radius_m": 1e6 * np.tan(0.05),
+            "sine": np.sin(0.05),
+        },
         INTENSITY,
     ),
     "rectangle": (
