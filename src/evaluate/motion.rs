@@ -132,8 +132,7 @@ fn followed_frame(
     let view = View::new(first.gpu, moved).map_err(TechniqueError::from)?;
     let classes = view.receivers.classify(moved, question.light);
     let fitted_to = Asked { receivers: &view.receivers, classes: &classes };
-    let followed = Job { fitted_to, ..first.job(question.light, &question.classes) };
-    let job = Job { scene: moved, ..followed };
+    let job = Job { scene: moved, fitted_to, ..first.job(question.light, &question.classes) };
     let mut mask = spec.technique().prepare(spec, job)?.run()?.mask;
     let mut opaque = moved.clone();
     opaque.meshes.iter_mut().for_each(|mesh| mesh.casts = true);
