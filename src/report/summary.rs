@@ -41,7 +41,7 @@ impl Summary {
             edge_p99: or_nothing(run.error.and_then(|error| error.edge_distance_px).map(|d| significant(d.p99))),
             causes: main_causes(run),
             gpu_ms: or_nothing(gpu_ms.map(|time| format!("{}{mark}", significant(time.median)))),
-            budget: run.budget.map_or(NOTHING, budget).to_owned(),
+            budget: if run.is_unchecked() { UNCHECKED } else { run.budget.map_or(NOTHING, budget) }.to_owned(),
         }
     }
 
@@ -63,6 +63,9 @@ pub(super) fn software_note(adapter: &Adapter) -> Option<String> {
         format!("{SOFTWARE_MARK} on {name}, a software adapter: not representative, compare the counted work instead")
     })
 }
+
+/// What a budget is where no pixel was asked.
+const UNCHECKED: &str = "unchecked";
 
 fn budget(budget: BudgetOutcome) -> &'static str {
     match (budget.met, budget.met_worst_case) {
@@ -95,6 +98,15 @@ mod tests {
         let summary = Summary::of(&run, &report().adapter);
         assert_eq!(summary.causes, ["acne 67 %", "edge-aliasing 33 %"]);
         assert_eq!((summary.gpu_ms.as_str(), summary.budget.as_str()), ("1.25*", "EXCEEDED"));
+    }
+
+    #[test]
+    fn a_budget_without_an_asked_pixel_is_unchecked() {
+        let mut run = full_run("kitchen");
+        run.pixels.as_mut().unwrap().asked = 0;
+        assert_eq!(Summary::of(&run, &Adapter::default()).budget, "unchecked");
+        run.budget = None;
+        assert_eq!(Summary::of(&run, &Adapter::default()).budget, NOTHING);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! JUnit XML: one suite per scene and one case per run, for build servers.
 //!
-//! An exceeded budget is a failure, a run that failed is an error, one that does not apply is skipped. The library
+//! An exceeded budget is a failure, a run that failed is an error, one that does not apply or asks nothing is skipped. The library
 //! escapes names and drops characters that XML cannot hold.
 
 use super::ExportError;
@@ -34,6 +34,9 @@ fn status(run: &Run) -> TestCaseStatus {
     let (mut status, kind, message) = match run.status {
         Status::Failed => (TestCaseStatus::non_success(NonSuccessKind::Error), "failed", why),
         Status::Unsupported => (TestCaseStatus::skipped(), "unsupported", why),
+        Status::Ok if run.is_unchecked() => {
+            (TestCaseStatus::skipped(), "unchecked", "no pixel was asked: the budget checks nothing".to_owned())
+        }
         Status::Ok => match exceeded(run) {
             Some(message) => (TestCaseStatus::non_success(NonSuccessKind::Failure), "budget", message),
             None => return TestCaseStatus::success(),
@@ -79,6 +82,15 @@ mod tests {
         assert!(xml.contains("42.9 % of the asked pixels are wrong, the budget is 0.1 %"), "{xml}");
         assert!(xml.contains(r#"<skipped message="open mesh, 12 edges" type="unsupported"/>"#), "{xml}");
         assert!(xml.contains(r#"<error message="device lost" type="failed"/>"#), "{xml}");
+    }
+
+    #[test]
+    fn a_budget_that_nothing_was_held_against_is_skipped() {
+        let mut unchecked = report();
+        unchecked.runs[0].pixels.as_mut().unwrap().asked = 0;
+        let xml = xml(&unchecked);
+        assert!(xml.contains(r#"tests="3" skipped="2" failures="0" errors="1""#), "{xml}");
+        assert!(xml.contains("the budget checks nothing"), "{xml}");
     }
 
     #[test]

@@ -93,6 +93,12 @@ impl Run {
         }
     }
 
+    /// Whether it has a budget that nothing was held against: no pixel was asked.
+    #[must_use]
+    pub fn is_unchecked(&self) -> bool {
+        self.budget.is_some() && self.pixels.is_some_and(|pixels| pixels.asked == 0)
+    }
+
     /// A run that does not apply, and why.
     #[must_use]
     pub fn unsupported(question: Question, why: String) -> Self {
