@@ -179,6 +179,22 @@ fn a_spots_texels_are_as_large_in_the_picture_as_predicted() {
     }
 }
 
+/// The camera's axis runs level with the lamp, and through it: none of the axis has a place in the lamp's picture.
+#[test]
+fn a_lamp_on_the_cameras_axis_has_a_trapezoid() {
+    let scene = "about = \"a plate under a lamp ahead\"\nsize = [160, 120]\n\
+         [camera]\neye = [0, 2, 6]\ntarget = [0, 2, 0]\nfov_y_deg = 60\n\
+         [[mesh]]\nfile = \"model.obj\"\n\
+         [[light]]\nname = \"spot\"\nkind = \"spot\"\nposition = [0, 2, 0]\ntarget = [0, 0, 0]\ncone_deg = 90\n";
+    let model = "o Floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n\
+                 o Plate\nv -0.5 1 -0.5\nv -0.5 1 0.5\nv 0.5 1 0.5\nv 0.5 1 -0.5\nf 5 6 7 8\n";
+    let scene = scene_of_texts(scene, model);
+    let shot = Shot::new(&scene, "spot");
+    let in_shadow = shadowed(&shot.question.truth.mask);
+    let wrong = shot.evaluate("map:projection=trapezoidal").verdict.pixels.wrong as usize;
+    assert!(in_shadow > 100 && 10 * wrong < in_shadow, "{wrong} wrong of {in_shadow} in shadow");
+}
+
 /// A wall behind the eye, below the spot that stands behind it.
 #[test]
 fn a_caster_behind_the_eye_casts() {

@@ -137,6 +137,21 @@ impl Trapezoid {
 mod tests {
     use super::*;
 
+    /// A light at the origin that looks along −z: w is −z.
+    #[test]
+    fn the_centre_line_ends_before_the_light() {
+        let clip = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::NEG_W, DVec4::ZERO);
+        let line =
+            |from_z: f64, to_z: f64| before_light(&clip, [DVec3::new(1.0, 0.0, from_z), DVec3::new(3.0, 0.0, to_z)]);
+        assert_eq!(line(-1.0, -6.0), Some([DVec3::new(1.0, 0.0, -1.0), DVec3::new(3.0, 0.0, -6.0)]));
+        let least = 6.0 * LEAST_BEFORE;
+        for (from, to, cut) in [(6.0, -6.0, 0), (0.0, -6.0, 0), (-6.0, 6.0, 1), (-6.0, 0.0, 1)] {
+            let ends = line(from, to).unwrap();
+            assert!((ends[cut].z + least).abs() < 1e-12 && ends[1 - cut].z == -6.0, "{from} {to}: {ends:?}");
+        }
+        assert_eq!((line(0.0, 0.0), line(2.0, 1.0)), (None, None), "level with the light, and behind it");
+    }
+
     /// TS-1: hulls lie inside the square, their nearest and farthest points on its top and base, the focus where asked.
     #[test]
     fn hulls_are_pulled_to_the_square() {
