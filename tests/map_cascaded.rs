@@ -5,11 +5,12 @@
 mod support;
 
 use glam::{DVec2, DVec3, Vec3};
+use gnomon::cause::Cause;
 use gnomon::scene::Scene;
 use gnomon::technique::map::projection::View;
 use gnomon::technique::map::{Lookup, Settings};
 use support::scenes::shipped;
-use support::shot::{Shot, parsed};
+use support::shot::{Shot, named, parsed};
 
 fn views(scene: &Scene, typed: &str, visible: &[DVec3]) -> Vec<View> {
     let settings = Settings::of(&parsed(typed));
@@ -165,4 +166,20 @@ fn a_stable_fit_keeps_the_texel_grid_and_a_tight_one_does_not() {
     assert!(spread(&phases(stable, true)) < ROUNDING_TEXELS, "turning too");
     let far = "map:size=1024,projection=cascaded,min_distance_m=0.1,max_distance_m=1000";
     assert!(spread(&phases(far, false)) < ROUNDING_TEXELS, "far away too");
+}
+
+/// Typed planes are measured from where a single map's light would stand, not from the middle of the world, which casters
+/// between it and the light would be before.
+#[test]
+fn a_typed_near_plane_lies_before_the_scene() {
+    let scene = shipped("torus", [160, 120]);
+    let shot = Shot::new(&scene, "sun");
+    for fit in ["sphere", "box"] {
+        let clipped = |near_m: f64| {
+            let typed = format!("map:projection=cascaded,cascade_fit={fit},near_m={near_m}");
+            named(&shot.evaluate(&typed), &[Cause::ClippingNear]).len()
+        };
+        assert_eq!(clipped(4.0), 0, "{fit}: before the torus");
+        assert!(clipped(6.0) > 100, "{fit}: through it");
+    }
 }
